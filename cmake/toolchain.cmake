@@ -1,0 +1,31 @@
+# How every translation unit is compiled.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
+
+find_program(CCACHE ccache)
+if(CCACHE)
+  # Two checkouts of one tree share the cache: paths are taken relative to the source folder.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}
+      CCACHE_NOHASHDIR=1 ${CCACHE})
+endif()
+
+add_library(metamer_flags INTERFACE)
+# Pixels must not depend on what the compiler chooses to fuse: fused multiply-adds are explicit (MulAdd).
+target_compile_options(metamer_flags INTERFACE -ffp-contract=off -fno-math-errno -Wall -Wextra -Wshadow
+                       -Wconversion -Wno-sign-conversion -Wno-psabi)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  # The lowest machine. With this baseline Highway 1.0.3 compiles exactly SSE4, AVX2 and AVX3.
+  target_compile_options(metamer_flags INTERFACE -march=x86-64-v2 -maes -mpclmul)
+endif()
+if(METAMER_SANITIZE)
+  target_compile_options(metamer_flags INTERFACE -fsanitize=${METAMER_SANITIZE} -fno-omit-frame-pointer -g)
+  target_link_options(metamer_flags INTERFACE -fsanitize=${METAMER_SANITIZE})
+endif()
+target_include_directories(metamer_flags INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)

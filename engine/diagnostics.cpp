@@ -1,0 +1,86 @@
+#include "engine/diagnostics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace metamer {
+namespace {
+
+constexpr size_t max_printed = 100;
+
+size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+    }
+  }
+  return row.back();
+}
+
+std::string_view severity_name(Severity severity) {
+  switch (severity) {
+    case Severity::note: return "note";
+    case Severity::warning: return "warning";
+    case Severity::error: break;
+  }
+  return "error";
+}
+
+}  // namespace
+
+void Diagnostics::error(const SourceLocation& at, std::string message) {
+  entries_.push_back({Severity::error, at.file, at.line, std::move(message)});
+  ++error_count_;
+}
+
+void Diagnostics::warning(const SourceLocation& at, std::string message) {
+  entries_.push_back({Severity::warning, at.file, at.line, std::move(message)});
+}
+
+void Diagnostics::note(const SourceLocation& at, std::string message) {
+  entries_.push_back({Severity::note, at.file, at.line, std::move(message)});
+}
+
+std::string format_diagnostics(const Diagnostics& diagnostics) {
+  std::vector<const Diagnostic*> order;
+  for (const Diagnostic& d : diagnostics.all()) order.push_back(&d);
+  std::stable_sort(order.begin(), order.end(), [](const Diagnostic* a, const Diagnostic* b) {
+    return a->file != b->file ? a->file < b->file : a->line < b->line;
+  });
+  std::string text;
+  for (size_t i = 0; i < std::min(order.size(), max_printed); ++i) {
+    const Diagnostic& d = *order[i];
+    text += d.line > 0 ? fmt::format("{}:{}: {}: {}\n", d.file, d.line, severity_name(d.severity), d.message)
+                       : fmt::format("{}: {}: {}\n", d.file, severity_name(d.severity), d.message);
+  }
+  if (order.size() > max_printed) text += fmt::format("... and {} more\n", order.size() - max_printed);
+  return text;
+}
+
+std::string nearest_word(std::string_view word, std::span<const std::string_view> candidates) {
+  std::string_view best;
+  size_t best_distance = std::max<size_t>(1, word.size() / 3) + 1;
+  for (const std::string_view candidate : candidates) {
+    const size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return std::string(best);
+}
+
+std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates) {
+  const std::string nearest = nearest_word(word, candidates);
+  return nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest);
+}
+
+}  // namespace metamer
