@@ -80,7 +80,7 @@ class Column {
   }
   void grow(size_t rows) {
     const size_t capacity = padded_to_lanes(rows);
-    T* fresh = static_cast<T*>(::operator new(capacity * sizeof(T), std::align_val_t{column_alignment}));
+    T* fresh = static_cast<T*>(::operator new (capacity * sizeof(T), std::align_val_t{column_alignment}));
     if (size_ > 0) std::memcpy(static_cast<void*>(fresh), data_, size_ * sizeof(T));
     std::memset(static_cast<void*>(fresh + size_), 0, (capacity - size_) * sizeof(T));
     release();
@@ -88,7 +88,7 @@ class Column {
     capacity_ = capacity;
   }
   void release() {
-    if (data_ != nullptr) ::operator delete(data_, std::align_val_t{column_alignment});
+    if (data_ != nullptr) ::operator delete (data_, std::align_val_t{column_alignment});
   }
 
   T* data_ = nullptr;

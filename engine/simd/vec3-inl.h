@@ -49,9 +49,7 @@ HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
   return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
           hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
 }
-HWY_INLINE Vec3 normalize(const Vec3& a) {
-  return a * hn::Div(splat(1.0f), hn::Sqrt(dot(a, a)));
-}
+HWY_INLINE Vec3 normalize(const Vec3& a) { return a * hn::Div(splat(1.0f), hn::Sqrt(dot(a, a))); }
 HWY_INLINE Vec3 if_then_else(MF mask, const Vec3& yes, const Vec3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
