@@ -1,0 +1,127 @@
+// What an entity can have. Plain data with units; handles (32-bit indices) instead of pointers.
+#pragma once
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "engine/ecs/registry.h"
+
+namespace metamer {
+
+using SpectrumId = uint32_t;  // a row of Scene::spectra
+using MeshId = uint32_t;      // an index into Scene::meshes
+using ImageId = uint32_t;     // an index into Scene::images
+using NameId = uint32_t;      // an index into Scene::names
+
+// Local to parent: the first three rows of an affine matrix, points as columns. Mirrors and non-uniform scales
+// are allowed; a singular one is the user's mistake.
+struct Transform {
+  glm::vec4 row0{1, 0, 0, 0}, row1{0, 1, 0, 0}, row2{0, 0, 1, 0};
+  static constexpr auto fields = std::make_tuple(&Transform::row0, &Transform::row1, &Transform::row2);
+};
+
+struct Parent {
+  Entity entity;
+  static constexpr auto fields = std::make_tuple(&Parent::entity);
+};
+
+enum class ShapeKind : uint32_t { mesh, sphere, disk, rectangle };
+
+// A shape in its local space, metres.
+//   mesh       `mesh`; several entities may name one mesh: they share it as instances
+//   sphere     around the origin, `radius`
+//   disk       in the plane z = `height`, normal +z, `inner_radius` to `radius`
+//   rectangle  in the plane z = 0, normal +z, `width` along x and `depth` along y, centred
+struct Geometry {
+  ShapeKind kind = ShapeKind::mesh;
+  MeshId mesh = no_index;
+  float radius = 1, inner_radius = 0, height = 0, width = 1, depth = 1;
+  uint32_t flip_normal = 0;  // 1: the side an area light emits to, and the normal, are the other one
+  static constexpr auto fields =
+      std::make_tuple(&Geometry::kind, &Geometry::mesh, &Geometry::radius, &Geometry::inner_radius, &Geometry::height,
+                      &Geometry::width, &Geometry::depth, &Geometry::flip_normal);
+};
+
+enum class MaterialKind : uint32_t { diffuse, conductor, dielectric };
+enum class FresnelModel : uint32_t { exact, schlick };
+
+// diffuse: `reflectance`. conductor: `eta`, `kappa`, GGX roughness. dielectric: `eta` inside against the
+// outside, smooth. `alpha_x`, `alpha_y` are GGX slopes' widths (not remapped); below 1e-3 a mirror.
+struct Material {
+  MaterialKind kind = MaterialKind::diffuse;
+  SpectrumId reflectance = 0;
+  SpectrumId eta = 0, kappa = 0;
+  float alpha_x = 0, alpha_y = 0;
+  FresnelModel fresnel = FresnelModel::exact;
+  static constexpr auto fields =
+      std::make_tuple(&Material::kind, &Material::reflectance, &Material::eta, &Material::kappa, &Material::alpha_x,
+                      &Material::alpha_y, &Material::fresnel);
+};
+
+// The entity whose Material covers this entity's surface. Without a slot (and without a Material of its own) a
+// surface is diffuse with reflectance 0.5.
+struct MaterialSlot {
+  Entity material;
+  static constexpr auto fields = std::make_tuple(&MaterialSlot::material);
+};
+
+enum class LightKind : uint32_t { area, point, directional, environment };
+
+// area         emitted radiance, W m^-2 sr^-1 nm^-1, of the entity's Geometry, on the side of the normal or both
+// point        intensity, W sr^-1 nm^-1, at the entity's origin
+// directional  irradiance on a plane facing it, W m^-2 nm^-1; light travels along the entity's -z axis
+// environment  radiance from infinity, times `image` (linear RGB of Scene::images) if there is one
+struct Light {
+  LightKind kind = LightKind::area;
+  SpectrumId spectrum = 0;
+  float scale = 1;
+  uint32_t two_sided = 0;
+  ImageId image = no_index;
+  static constexpr auto fields =
+      std::make_tuple(&Light::kind, &Light::spectrum, &Light::scale, &Light::two_sided, &Light::image);
+};
+
+enum class CameraKind : uint32_t { perspective, orthographic };
+
+// Looks along its local +z, +y up, +x to the RIGHT of the picture (left-handed camera space, as pbrt's; the
+// transform to the right-handed world mirrors).
+struct Camera {
+  CameraKind kind = CameraKind::perspective;
+  float fov_deg = 45;                   // over the shorter side of the picture; perspective only
+  float screen_height = 2;              // metres over the shorter side; orthographic only
+  float lens_radius = 0;                // metres; 0 is a pinhole
+  float focal_distance = 1;             // metres along +z
+  glm::vec4 screen_window{0, 0, 0, 0};  // x_min x_max y_min y_max on the plane of unit half-height; all 0: default
+  static constexpr auto fields = std::make_tuple(&Camera::kind, &Camera::fov_deg, &Camera::screen_height,
+                                                 &Camera::lens_radius, &Camera::focal_distance, &Camera::screen_window);
+};
+
+struct Name {
+  NameId name = no_index;
+  static constexpr auto fields = std::make_tuple(&Name::name);
+};
+
+// Which rays see the entity.
+inline constexpr uint32_t visible_to_camera = 1, visible_to_bounces = 2, visible_to_shadows = 4, visible_to_all = 7;
+struct Visibility {
+  uint32_t mask = visible_to_all;
+  static constexpr auto fields = std::make_tuple(&Visibility::mask);
+};
+
+// The media on both sides of a surface; a null entity is vacuum.
+struct MediumSlot {
+  Entity inside, outside;
+  static constexpr auto fields = std::make_tuple(&MediumSlot::inside, &MediumSlot::outside);
+};
+
+// Where the user said it, for messages.
+struct Source {
+  NameId file = no_index;
+  uint32_t line = 0;
+  static constexpr auto fields = std::make_tuple(&Source::file, &Source::line);
+};
+
+using Registry = BasicRegistry<Transform, Parent, Geometry, Material, MaterialSlot, Light, Camera, Name, Visibility,
+                               MediumSlot, Source>;
+
+}  // namespace metamer
