@@ -18,8 +18,10 @@ endif()
 
 add_library(metamer_flags INTERFACE)
 # Pixels must not depend on what the compiler chooses to fuse: fused multiply-adds are explicit (MulAdd).
-target_compile_options(metamer_flags INTERFACE -ffp-contract=off -fno-math-errno -Wall -Wextra -Wshadow
-                       -Wconversion -Wno-sign-conversion -Wno-psabi)
+target_compile_options(metamer_flags INTERFACE -ffp-contract=off -fno-math-errno)
+# Our warnings are not the business of those who use the installed library.
+set(warnings -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi)
+target_compile_options(metamer_flags INTERFACE "$<BUILD_INTERFACE:${warnings}>")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   # The lowest machine. With this baseline Highway 1.0.3 compiles exactly SSE4, AVX2 and AVX3.
   target_compile_options(metamer_flags INTERFACE -march=x86-64-v2 -maes -mpclmul)

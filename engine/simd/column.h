@@ -61,9 +61,9 @@ class Column {
     if (rows > capacity_) grow(rows);
   }
   void push_back(const T& value) {
-    const T copy = value;
-    resize(size_ + 1);
-    data_[size_ - 1] = copy;
+    const T copy = value;  // may be one of our own rows, which growing would free
+    if (size_ == capacity_) grow(std::max<size_t>(1, capacity_ * 2));
+    data_[size_++] = copy;
   }
   void clear() { resize(0); }
   void swap(Column& other) noexcept {
