@@ -46,7 +46,7 @@ fi
 
 machine=$(mktemp -d "${TMPDIR:-/tmp}/metamer-fresh.XXXXXX")
 cleanup() {
-  for mounted in proc dev/pts dev; do umount -l "$machine/$mounted" 2>/dev/null || true; done
+  umount --recursive --lazy "$machine/proc" "$machine/dev" 2>/dev/null || true
   if [[ $keep == 1 ]]; then say "left in $machine"; else rm -rf --one-file-system "$machine"; fi
 }
 trap cleanup EXIT
@@ -103,8 +103,8 @@ inside() {
 
 git -c safe.directory="$root" clone --quiet --bare --no-local "$root" "$machine/srv/metamer.git"
 git -C "$machine/srv/metamer.git" update-ref --no-deref HEAD "$(git -c safe.directory="$root" -C "$root" rev-parse HEAD)"
-chmod -R a+rX "$machine/srv"
-inside "git -c advice.detachedHead=false -c safe.directory='*' clone --quiet /srv/metamer.git metamer"
+chroot "$machine" chown -R "$([[ $as_user == 1 ]] && echo visitor || echo root)" /srv/metamer.git
+inside "git -c advice.detachedHead=false clone --quiet /srv/metamer.git metamer"
 
 began=$SECONDS
 say "./run render ${render_flags[*]}"
