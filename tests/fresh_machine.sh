@@ -56,7 +56,7 @@ seconds() { printf '%d s' $((SECONDS - began)); }
 
 # The package source this machine uses for Debian itself: a mirror, as one-line or as deb822 source.
 mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/debian.sources 2>/dev/null |
-  sed -nE 's#^(deb |URIs:) *(\[[^]]*\] )?(https?://[^ ]+/debian)/?( .*)?$#\3#p' | head -n 1)
+  sed -nE 's#^(deb |URIs:) *(\[[^]]*\] )?(https?://[^ ]+/debian)/?( .*)?$#\3#p' | head -n 1) || true
 mirror=${mirror:-http://deb.debian.org/debian}
 
 began=$SECONDS
