@@ -45,6 +45,7 @@ if [[ ${METAMER_FRESH_NAMESPACE:-} != yes ]]; then
 fi
 
 machine=$(mktemp -d "${TMPDIR:-/tmp}/metamer-fresh.XXXXXX")
+chmod 755 "$machine"
 cleanup() {
   umount --recursive --lazy "$machine/proc" "$machine/dev" 2>/dev/null || true
   if [[ $keep == 1 ]]; then say "left in $machine"; else rm -rf --one-file-system "$machine"; fi
