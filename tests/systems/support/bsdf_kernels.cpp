@@ -1,0 +1,142 @@
+#include "tests/systems/support/bsdf_kernels.h"
+
+#include <cmath>
+#include <cstring>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tests/systems/support/bsdf_kernels.cpp"
+#include "hwy/foreach_target.h"
+//
+#include "hwy/highway.h"
+#include "systems/bsdf/diffuse-inl.h"
+#include "systems/bsdf/ggx-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace metamer::HWY_NAMESPACE {
+namespace {
+using testing::BsdfCase;
+using testing::BsdfResult;
+
+struct Arguments {
+  Vec3 wo, wi;
+  VF u, v, alpha_x, alpha_y;
+  VF albedo[4], eta[4], kappa[4];
+  MF schlick, dispersive;
+};
+struct Results {
+  Vec3 wi;
+  VF value[4], pdf, delta, transmitted, terminate_secondary;
+};
+Results nothing() {
+  const VF zero = splat(0);
+  return {{zero, zero, zero}, {zero, zero, zero, zero}, zero, zero, zero, zero};
+}
+
+template <class Kernel>
+std::vector<BsdfResult> run(const std::vector<BsdfCase>& cases, Kernel kernel) {
+  const size_t count = cases.size();
+  std::vector<BsdfResult> results(count);
+  constexpr size_t fields = sizeof(BsdfCase) / sizeof(float), outputs = sizeof(BsdfResult) / sizeof(float);
+  const FloatTag d;
+  const size_t lanes = hn::Lanes(d);
+  alignas(64) float in[fields][16], out[outputs][16];
+  for (size_t first = 0; first < count; first += lanes) {
+    for (size_t lane = 0; lane < lanes; ++lane) {
+      float row[fields];
+      if (first + lane < count) std::memcpy(row, &cases[first + lane], sizeof(row));
+      for (size_t f = 0; f < fields; ++f) in[f][lane] = first + lane < count ? row[f] : std::nanf("");
+    }
+    size_t f = 0;
+    const auto next = [&] { return hn::Load(d, in[f++]); };
+    Arguments a;
+    a.wo.x = next(), a.wo.y = next(), a.wo.z = next();
+    a.wi.x = next(), a.wi.y = next(), a.wi.z = next();
+    a.u = next(), a.v = next(), a.alpha_x = next(), a.alpha_y = next();
+    for (VF& x : a.albedo) x = next();
+    for (VF& x : a.eta) x = next();
+    for (VF& x : a.kappa) x = next();
+    a.schlick = hn::Eq(next(), splat(1.0f));
+    a.dispersive = hn::Eq(next(), splat(1.0f));
+    const Results r = kernel(a);
+    size_t o = 0;
+    for (const VF& x : {r.wi.x, r.wi.y, r.wi.z, r.value[0], r.value[1], r.value[2], r.value[3], r.pdf, r.delta,
+                        r.transmitted, r.terminate_secondary}) {
+      hn::Store(x, d, out[o++]);
+    }
+    for (size_t lane = 0; lane < lanes && first + lane < count; ++lane) {
+      float row[outputs];
+      for (size_t k = 0; k < outputs; ++k) row[k] = out[k][lane];
+      std::memcpy(&results[first + lane], row, sizeof(row));
+    }
+  }
+  return results;
+}
+
+VF flag(MF mask) { return hn::IfThenElseZero(mask, splat(1.0f)); }
+Results of_sample(const BsdfSample& sample) {
+  Results r = nothing();
+  r.wi = sample.wi;
+  for (int j = 0; j < 4; ++j) r.value[j] = sample.weight[j];
+  r.pdf = sample.pdf;
+  return r;
+}
+ConductorOptics metal(const Arguments& a) {
+  ConductorOptics optics;
+  for (int j = 0; j < 4; ++j) optics.n[j] = a.eta[j], optics.kappa[j] = a.kappa[j];
+  optics.schlick = a.schlick;
+  return optics;
+}
+
+std::vector<BsdfResult> EvalDiffuse(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) {
+    Results r = nothing();
+    eval_diffuse(a.wo, a.albedo, a.wi, r.value, r.pdf);
+    return r;
+  });
+}
+std::vector<BsdfResult> SampleDiffuse(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) { return of_sample(sample_diffuse(a.wo, a.albedo, a.u, a.v)); });
+}
+std::vector<BsdfResult> EvalConductor(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) {
+    Results r = nothing();
+    eval_conductor(make_ggx_lobe(a.wo, a.alpha_x, a.alpha_y), metal(a), a.wi, r.value, r.pdf);
+    return r;
+  });
+}
+std::vector<BsdfResult> SampleConductor(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) {
+    const GgxLobe lobe = make_ggx_lobe(a.wo, a.alpha_x, a.alpha_y);
+    Results r = of_sample(sample_conductor(lobe, metal(a), a.u, a.v));
+    r.delta = flag(lobe.smooth);
+    return r;
+  });
+}
+
+}  // namespace
+}  // namespace metamer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace metamer {
+HWY_EXPORT(EvalDiffuse);
+HWY_EXPORT(SampleDiffuse);
+HWY_EXPORT(EvalConductor);
+HWY_EXPORT(SampleConductor);
+
+namespace testing {
+std::vector<BsdfResult> run_eval_diffuse(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(EvalDiffuse)(cases);
+}
+std::vector<BsdfResult> run_sample_diffuse(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(SampleDiffuse)(cases);
+}
+std::vector<BsdfResult> run_eval_conductor(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(EvalConductor)(cases);
+}
+std::vector<BsdfResult> run_sample_conductor(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(SampleConductor)(cases);
+}
+}  // namespace testing
+}  // namespace metamer
+#endif

@@ -1,0 +1,55 @@
+// The BSDF kernels on lists of cases, for tests: packs cases into full vectors, runs the instruction set chosen last by
+// hwy::SetSupportedTargetsForTest, and unpacks. Lanes behind the last case hold NaN.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "systems/bsdf/reference.h"
+
+namespace metamer::testing {
+
+// The arguments of any one BSDF kernel. Only floats, so that a case is a row of columns.
+struct BsdfCase {
+  float wo[3] = {0, 0, 1}, wi[3] = {0, 0, 1};
+  float u = 0, v = 0;
+  float alpha_x = 0, alpha_y = 0;
+  float albedo[4] = {1, 1, 1, 1};
+  float eta[4] = {1, 1, 1, 1}, kappa[4] = {0, 0, 0, 0};
+  float schlick = 0, dispersive = 0;  // 1 where set
+};
+struct BsdfResult {
+  float wi[3] = {0, 0, 0};
+  float value[4] = {0, 0, 0, 0};  // f_cos of an evaluation, weight of a sample
+  float pdf = 0;
+  float delta = 0, transmitted = 0, terminate_secondary = 0;
+};
+using BsdfKernel = std::vector<BsdfResult> (*)(const std::vector<BsdfCase>&);
+
+std::vector<BsdfResult> run_eval_diffuse(const std::vector<BsdfCase>& cases);
+std::vector<BsdfResult> run_sample_diffuse(const std::vector<BsdfCase>& cases);
+std::vector<BsdfResult> run_eval_conductor(const std::vector<BsdfCase>& cases);
+std::vector<BsdfResult> run_sample_conductor(const std::vector<BsdfCase>& cases);
+
+// Runs body once per instruction set this machine has.
+template <class Body>
+void on_every_target(Body body);
+
+}  // namespace metamer::testing
+
+#include <gtest/gtest.h>
+
+#include "hwy/targets.h"
+
+namespace metamer::testing {
+template <class Body>
+void on_every_target(Body body) {
+  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    body();
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+}  // namespace metamer::testing
