@@ -51,11 +51,10 @@ HWY_INLINE Vec3 refract(const Vec3& v, const Vec3& n, VF inv_eta, VF cos_theta_t
 }
 
 // Exact Fresnel reflectance between transparent media, eta > 0, inv_eta = 1 / eta. With c = cos(theta_i),
-// s = sin(theta_i), g = eta cos(theta_t): r_s = (1 - eta^2) / (c + g)^2 and r_p / r_s = (c g - s^2) / (c g + s^2) (Born &
-// Wolf, Principles of Optics, section 1.5.2, in sums without cancellation), so that
-// (r_s^2 + r_p^2) / 2 = r_s^2 (c^2 g^2 + s^4) / (c g + s^2)^2. Grazing incidence gives 1 unless eta = 1, which gives 0.
-// Largest error against double: 1e-5 while |g^2| > 1e-3; nearer to the critical angle, where the slope is infinite,
-// 8e-3. Tested for eta in [1/3, 3].
+// s = sin(theta_i), g = eta cos(theta_t): r_s = (1 - eta^2) / (c + g)^2 and r_p / r_s = (c g - s^2) / (c g + s^2) (Born
+// & Wolf, Principles of Optics, section 1.5.2, in sums without cancellation), so that (r_s^2 + r_p^2) / 2 = r_s^2 (c^2
+// g^2 + s^4) / (c g + s^2)^2. Grazing incidence gives 1 unless eta = 1, which gives 0. Largest error against double:
+// 1e-5 while |g^2| > 1e-3; nearer to the critical angle, where the slope is infinite, 8e-3. Tested for eta in [1/3, 3].
 HWY_INLINE DielectricBoundary fresnel_dielectric(VF eta, VF inv_eta, VF cos_theta_i) {
   const FloatTag d;
   const VF one = splat(1.0f);
@@ -67,15 +66,15 @@ HWY_INLINE DielectricBoundary fresnel_dielectric(VF eta, VF inv_eta, VF cos_thet
   const VF s2 = hn::NegMulAdd(c, c, one);
   // c + g is zero only for eta = 1 at grazing incidence, where r_s is zero as well.
   const VF sum = hn::Max(hn::Add(c, g), splat(1e-12f));
-  const VF r = hn::Div(hn::Mul(hn::Sub(eta, one), hn::Add(eta, one)),
-                       hn::Mul(hn::Mul(sum, sum), hn::MulAdd(c, g, s2)));
+  const VF r = hn::Div(hn::Mul(hn::Sub(eta, one), hn::Add(eta, one)), hn::Mul(hn::Mul(sum, sum), hn::MulAdd(c, g, s2)));
   const VF f = hn::Mul(hn::Mul(r, r), hn::MulAdd(hn::Mul(c, c), g2_clamped, hn::Mul(s2, s2)));
   return {hn::IfThenElse(total, one, hn::Min(f, one)), hn::Mul(g, inv_eta), total};
 }
 
 // Schlick's approximation F0 + (1 - F0)(1 - cos)^5 (Schlick, Computer Graphics Forum 13(3), 1994) between transparent
 // media: the cosine is the one on the side of the smaller index, so both directions agree; 1 beyond the critical angle.
-// Arguments as for fresnel_dielectric. Errors against double as fresnel_dielectric. Its distance from the exact form: docs/fresnel.md.
+// Arguments as for fresnel_dielectric. Errors against double as fresnel_dielectric. Its distance from the exact form:
+// docs/fresnel.md.
 HWY_INLINE DielectricBoundary schlick_dielectric(VF eta, VF inv_eta, VF cos_theta_i) {
   const FloatTag d;
   const VF one = splat(1.0f);
@@ -92,7 +91,7 @@ HWY_INLINE DielectricBoundary schlick_dielectric(VF eta, VF inv_eta, VF cos_thet
 // Exact Fresnel reflectance of an absorbing medium of index n + i kappa, n >= 0, 0 <= kappa <= 1e8, not both 0.
 // With (a + i b)^2 = (n + i kappa)^2 - s^2 (Born & Wolf, section 14.2; the sums regrouped to avoid cancellation):
 // R_s = ((a - c)^2 + b^2) / ((a + c)^2 + b^2) and (R_s + R_p) / 2 = R_s t / (t + 2 a c s^2), t = c^2 (a^2 + b^2) + s^4.
-// Largest error against double: 1e-5; for kappa < refracting_kappa near a critical angle as fresnel_dielectric.
+// Largest error against double: 2e-5; for kappa < refracting_kappa near a critical angle as fresnel_dielectric.
 HWY_INLINE VF fresnel_conductor(VF n, VF kappa, VF cos_theta_i) {
   const FloatTag d;
   const VF one = splat(1.0f);
@@ -120,9 +119,10 @@ HWY_INLINE VF fresnel_conductor(VF n, VF kappa, VF cos_theta_i) {
   return hn::Min(hn::Div(numerator, hn::Max(denominator, tiny)), one);
 }
 
-// Schlick's approximation of an absorbing medium with F0 = ((n-1)^2 + kappa^2) / ((n+1)^2 + kappa^2). There is a critical
-// angle only where light is refracted at all: for kappa below refracting_kappa and n < 1 the transmitted cosine enters
-// and F = 1 beyond; every other medium uses cos(theta_i). Range as fresnel_conductor. Errors as fresnel_conductor.
+// Schlick's approximation of an absorbing medium with F0 = ((n-1)^2 + kappa^2) / ((n+1)^2 + kappa^2). There is a
+// critical angle only where light is refracted at all: for kappa below refracting_kappa and n < 1 the transmitted
+// cosine enters and F = 1 beyond; every other medium uses cos(theta_i). Range as fresnel_conductor. Errors as
+// fresnel_conductor.
 HWY_INLINE VF schlick_conductor(VF n, VF kappa, VF cos_theta_i) {
   const FloatTag d;
   const VF one = splat(1.0f);

@@ -13,9 +13,7 @@ constexpr double pi = std::numbers::pi;
 
 double square(double x) { return x * x; }
 double schlick_curve(double f0, double cos_theta) { return f0 + (1 - f0) * std::pow(1 - cos_theta, 5); }
-bool totally_reflected(double eta, double cos_theta_i) {
-  return eta < 1 && 1 - square(cos_theta_i) > eta * eta;
-}
+bool totally_reflected(double eta, double cos_theta_i) { return eta < 1 && 1 - square(cos_theta_i) > eta * eta; }
 Direction upper(const Direction& w, double side) { return {w.x, w.y, w.z * side}; }
 double side_of(const Direction& w) { return std::signbit(w.z) ? -1.0 : 1.0; }
 Roughness raised(const Roughness& roughness) {

@@ -1,0 +1,137 @@
+// Every BSDF kernel against its scalar double twin on random arguments, on every instruction set.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "systems/bsdf/limits.h"
+#include "systems/bsdf/reference.h"
+#include "tests/systems/support/bsdf_kernels.h"
+
+namespace metamer::testing {
+namespace {
+using reference::Direction;
+using reference::Spectrum4;
+
+Direction direction(const float w[3]) { return {w[0], w[1], w[2]}; }
+Spectrum4 spectrum(const float s[4]) { return {s[0], s[1], s[2], s[3]}; }
+reference::Roughness roughness(const BsdfCase& c) { return {c.alpha_x, c.alpha_y}; }
+reference::ConductorOptics metal(const BsdfCase& c) { return {spectrum(c.eta), spectrum(c.kappa), c.schlick == 1}; }
+
+class Random {
+ public:
+  explicit Random(uint32_t seed) : engine_(seed) {}
+  float uniform() { return std::uniform_real_distribution<float>(0, 1)(engine_); }
+  void direction(float w[3]) {
+    const float z = 2 * uniform() - 1, phi = 2 * std::numbers::pi_v<float> * uniform();
+    const Direction unit = reference::normalize(
+        {std::sqrt(1 - z * z) * std::cos(phi), std::sqrt(1 - z * z) * std::sin(phi), z == 0 ? 0.5f : z});
+    w[0] = float(unit.x), w[1] = float(unit.y), w[2] = float(unit.z);
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+// Directions over the whole sphere; alphas from smooth to 1, in half of the cases equal, in some 0.
+std::vector<BsdfCase> random_metals(size_t count) {
+  Random random(5);
+  std::vector<BsdfCase> cases(count);
+  for (BsdfCase& c : cases) {
+    random.direction(c.wo);
+    random.direction(c.wi);
+    c.u = std::min(random.uniform(), 0x1.fffffep-1f), c.v = std::min(random.uniform(), 0x1.fffffep-1f);
+    c.alpha_x = std::pow(10.0f, -4 * random.uniform());
+    c.alpha_y = random.uniform() < 0.5f ? c.alpha_x : std::pow(10.0f, -4 * random.uniform());
+    if (random.uniform() < 0.05f) c.alpha_x = 0;
+    for (int j = 0; j < 4; ++j) {
+      c.albedo[j] = random.uniform();
+      c.eta[j] = 0.05f + 4 * random.uniform();
+      c.kappa[j] = 0.5f + 6 * random.uniform();
+    }
+    c.schlick = random.uniform() < 0.5f ? 1 : 0;
+  }
+  return cases;
+}
+
+double relative(double a, double b) { return a == b ? 0 : std::abs(a - b) / std::max(std::abs(b), 1e-30); }
+
+TEST(BsdfTwin, DiffuseStaysWithinItsStatedError) {
+  const std::vector<BsdfCase> cases = random_metals(100000);
+  on_every_target([&] {
+    const std::vector<BsdfResult> values = run_eval_diffuse(cases), samples = run_sample_diffuse(cases);
+    double value_error = 0, direction_error = 0, pdf_error = 0;
+    for (size_t i = 0; i < cases.size(); ++i) {
+      const BsdfCase& c = cases[i];
+      const reference::BsdfValue value = reference::eval_diffuse(direction(c.wo), spectrum(c.albedo), direction(c.wi));
+      const reference::BsdfSample sample = reference::sample_diffuse(direction(c.wo), spectrum(c.albedo), c.u, c.v);
+      value_error = std::max(value_error, relative(values[i].pdf, value.pdf));
+      for (size_t j = 0; j < 4; ++j) {
+        value_error = std::max(value_error, relative(values[i].value[j], value.f_cos[j]));
+        EXPECT_EQ(samples[i].value[j], c.albedo[j]);
+      }
+      const Direction wi = direction(samples[i].wi);
+      direction_error = std::max(
+          {direction_error, std::abs(wi.x - sample.wi.x), std::abs(wi.y - sample.wi.y), std::abs(wi.z - sample.wi.z)});
+      pdf_error = std::max(pdf_error, relative(samples[i].pdf, sample.pdf));
+    }
+    EXPECT_LT(value_error, 4e-7);
+    EXPECT_LT(direction_error, 1e-6);
+    EXPECT_LT(pdf_error, 4e-7);
+  });
+}
+
+TEST(BsdfTwin, ConductorEvaluationStaysWithinItsStatedError) {
+  const std::vector<BsdfCase> cases = random_metals(300000);
+  on_every_target([&] {
+    const std::vector<BsdfResult> values = run_eval_conductor(cases);
+    double f_error = 0, pdf_error = 0;
+    for (size_t i = 0; i < cases.size(); ++i) {
+      const BsdfCase& c = cases[i];
+      const reference::BsdfValue value =
+          reference::eval_conductor(direction(c.wo), roughness(c), metal(c), direction(c.wi));
+      for (size_t j = 0; j < 4; ++j) f_error = std::max(f_error, relative(values[i].value[j], value.f_cos[j]));
+      pdf_error = std::max(pdf_error, relative(values[i].pdf, value.pdf));
+    }
+    EXPECT_LT(f_error, 2e-5);
+    EXPECT_LT(pdf_error, 2e-5);
+  });
+}
+
+TEST(BsdfTwin, ConductorSamplesStayWithinTheirStatedError) {
+  const std::vector<BsdfCase> cases = random_metals(300000);
+  on_every_target([&] {
+    const std::vector<BsdfResult> samples = run_sample_conductor(cases);
+    double direction_error = 0, weight_error = 0, pdf_error = 0;
+    size_t void_mismatches = 0;
+    for (size_t i = 0; i < cases.size(); ++i) {
+      const BsdfCase& c = cases[i];
+      const reference::BsdfSample sample =
+          reference::sample_conductor(direction(c.wo), roughness(c), metal(c), c.u, c.v);
+      EXPECT_EQ(samples[i].delta == 1, sample.delta);
+      const Direction wi = direction(samples[i].wi);
+      direction_error = std::max(
+          {direction_error, std::abs(wi.x - sample.wi.x), std::abs(wi.y - sample.wi.y), std::abs(wi.z - sample.wi.z)});
+      // A draw at the horizon may fall to either side of it.
+      if ((samples[i].pdf > 0) != (sample.pdf > 0)) {
+        ++void_mismatches;
+        EXPECT_LT(std::abs(wi.z), 1e-5);
+        continue;
+      }
+      for (size_t j = 0; j < 4; ++j) {
+        weight_error = std::max(weight_error, std::abs(samples[i].value[j] - sample.weight[j]));
+      }
+      pdf_error = std::max(pdf_error, relative(samples[i].pdf, sample.pdf));
+    }
+    EXPECT_LT(direction_error, 3e-5);
+    EXPECT_LT(weight_error, 5e-5);
+    EXPECT_LT(pdf_error, 1e-4);
+    EXPECT_LT(void_mismatches, 5u);
+  });
+}
+
+}  // namespace
+}  // namespace metamer::testing
