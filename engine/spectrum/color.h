@@ -10,7 +10,7 @@
 
 namespace metamer {
 
-using Color3 = std::array<double, 3>;             // X Y Z or R G B
+using Color3 = std::array<double, 3>;                  // X Y Z or R G B
 using Matrix3 = std::array<std::array<double, 3>, 3>;  // row-major
 
 Matrix3 multiply(const Matrix3& a, const Matrix3& b);
@@ -48,8 +48,8 @@ Color3 xyz_of_chromaticity(double x, double y);
 
 enum class Adaptation : uint8_t { bradford, cat16 };
 
-// Maps XYZ seen under white `from` to XYZ that looks alike under white `to` (complete adaptation; both with the same Y).
-// Bradford: Lam 1985 in its linear form (ICC.1:2010, annex E). CAT16: Li et al., Color Res. Appl. 42(6), 2017.
+// Maps XYZ seen under white `from` to XYZ that looks alike under white `to` (complete adaptation; both with the same
+// Y). Bradford: Lam 1985 in its linear form (ICC.1:2010, annex E). CAT16: Li et al., Color Res. Appl. 42(6), 2017.
 Matrix3 adaptation_matrix(Adaptation method, const Color3& from, const Color3& to);
 
 }  // namespace metamer

@@ -22,15 +22,15 @@ struct Alias {
   size_t column;
 };
 constexpr Alias aliases[] = {
-    {"BK7", "dispersion/N-BK7", 0},          {"SF11", "dispersion/N-SF11", 0},
-    {"SF66", "dispersion/N-SF66", 0},        {"LAK33", "dispersion/N-LAK33B", 0},
-    {"FK51", "dispersion/N-FK51A", 0},       {"sapphire", "dispersion/sapphire-o", 0},
-    {"glass-BK7", "dispersion/N-BK7", 0},    {"glass-SF10", "dispersion/SF10", 0},
-    {"glass-SF11", "dispersion/N-SF11", 0},  {"glass-FK51A", "dispersion/N-FK51A", 0},
-    {"stdillum-A", "illuminant/A", 1},       {"stdillum-D50", "illuminant/D50", 1},
-    {"stdillum-D65", "illuminant/D65", 1},   {"stdillum-F1", "illuminant/FL1", 1},
-    {"stdillum-F2", "illuminant/FL2", 1},    {"stdillum-F7", "illuminant/FL7", 1},
-    {"stdillum-F11", "illuminant/FL11", 1},  {"stdillum-F12", "illuminant/FL12", 1},
+    {"BK7", "dispersion/N-BK7", 0},         {"SF11", "dispersion/N-SF11", 0},
+    {"SF66", "dispersion/N-SF66", 0},       {"LAK33", "dispersion/N-LAK33B", 0},
+    {"FK51", "dispersion/N-FK51A", 0},      {"sapphire", "dispersion/sapphire-o", 0},
+    {"glass-BK7", "dispersion/N-BK7", 0},   {"glass-SF10", "dispersion/SF10", 0},
+    {"glass-SF11", "dispersion/N-SF11", 0}, {"glass-FK51A", "dispersion/N-FK51A", 0},
+    {"stdillum-A", "illuminant/A", 1},      {"stdillum-D50", "illuminant/D50", 1},
+    {"stdillum-D65", "illuminant/D65", 1},  {"stdillum-F1", "illuminant/FL1", 1},
+    {"stdillum-F2", "illuminant/FL2", 1},   {"stdillum-F7", "illuminant/FL7", 1},
+    {"stdillum-F11", "illuminant/FL11", 1}, {"stdillum-F12", "illuminant/FL12", 1},
 };
 
 // The part of a data table's name after "folder/", or nothing if it is not in that folder.
@@ -79,8 +79,9 @@ const std::vector<NamedSpectrum>& names() {
 }  // namespace
 
 std::optional<Samples> named_spectrum(std::string_view name) {
-  const auto found = std::lower_bound(names().begin(), names().end(), name,
-                                      [](const NamedSpectrum& entry, std::string_view key) { return entry.name < key; });
+  const auto found =
+      std::lower_bound(names().begin(), names().end(), name,
+                       [](const NamedSpectrum& entry, std::string_view key) { return entry.name < key; });
   if (found == names().end() || found->name != name) return std::nullopt;
   if (found->name == "E") return cie_illuminant("E");
   if (found->name == "illum-acesD60") return daylight(6000.0 * daylight_shift);
@@ -90,12 +91,11 @@ std::optional<Samples> named_spectrum(std::string_view name) {
 }
 
 std::span<const std::string_view> spectrum_names() {
-  static const std::vector<std::string_view> views(
-      [] {
-        std::vector<std::string_view> list;
-        for (const NamedSpectrum& entry : names()) list.push_back(entry.name);
-        return list;
-      }());
+  static const std::vector<std::string_view> views([] {
+    std::vector<std::string_view> list;
+    for (const NamedSpectrum& entry : names()) list.push_back(entry.name);
+    return list;
+  }());
   return views;
 }
 

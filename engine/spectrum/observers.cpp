@@ -6,10 +6,10 @@ namespace metamer {
 namespace {
 
 constexpr std::array<std::string_view, observer_count> names = {"cie1931", "cie1964", "cie2015-2", "cie2015-10",
-                                                                 "stiles-burch1955"};
+                                                                "stiles-burch1955"};
 constexpr std::array<std::string_view, observer_count> files = {"cmf/cie1931_2deg_xyz", "cmf/cie1964_10deg_xyz",
-                                                                 "cmf/cie2015_2deg_xyz", "cmf/cie2015_10deg_xyz",
-                                                                 "cmf/stiles_burch1955_2deg_rgb"};
+                                                                "cmf/cie2015_2deg_xyz", "cmf/cie2015_10deg_xyz",
+                                                                "cmf/stiles_burch1955_2deg_rgb"};
 
 ObserverTable make_table(std::string_view file) {
   const DataTable& data = require_embedded_data(file);

@@ -25,8 +25,7 @@ Weights make_weights(ColorSpace space) {
   for (size_t i = 0; i < lambda_count; ++i) {
     weights.t[i] = (lambda_min_nm + static_cast<double>(i) - sigmoid_center_nm) / sigmoid_half_range_nm;
     const double w = white[i] / y;
-    weights.rgb[i] =
-        multiply(xyz_to_rgb(space), Color3{w * matching[0][i], w * matching[1][i], w * matching[2][i]});
+    weights.rgb[i] = multiply(xyz_to_rgb(space), Color3{w * matching[0][i], w * matching[1][i], w * matching[2][i]});
   }
   return weights;
 }

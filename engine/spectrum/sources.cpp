@@ -36,8 +36,8 @@ double planck_radiance(double temperature_kelvin, double lambda_nm) {
   const double lambda5 = lambda * lambda * lambda * lambda * lambda;
   const double exponent = planck * light / (lambda * boltzmann * temperature_kelvin);
   // e^x - 1 loses digits where x is small (temperatures of millions of kelvin): there its series.
-  const double denominator = exponent < 1e-5 ? exponent * (1.0 + exponent * (0.5 + exponent / 6.0))
-                                             : portable::exp(exponent) - 1.0;
+  const double denominator =
+      exponent < 1e-5 ? exponent * (1.0 + exponent * (0.5 + exponent / 6.0)) : portable::exp(exponent) - 1.0;
   // 1e-9: per metre to per nanometre.
   return 2.0 * planck * light * light / lambda5 / denominator * 1e-9;
 }

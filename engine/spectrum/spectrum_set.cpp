@@ -47,7 +47,8 @@ std::string table_mistake(std::span<const double> lambda_nm, std::span<const dou
   if (values.size() < 2) return "a table needs at least two wavelengths";
   for (size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(lambda_nm[i])) return fmt::format("wavelength {} is not a finite number", i + 1);
-    if (!representable(values[i])) return fmt::format("value {} is not a finite number up to {:g}", i + 1, largest_value);
+    if (!representable(values[i]))
+      return fmt::format("value {} is not a finite number up to {:g}", i + 1, largest_value);
     if (i > 0 && lambda_nm[i] <= lambda_nm[i - 1]) {
       return fmt::format("wavelengths must ascend, but {} nm follows {} nm", lambda_nm[i], lambda_nm[i - 1]);
     }
@@ -91,7 +92,8 @@ SpectrumSet::StoredTable SpectrumSet::store_table(const Samples& samples) {
   const uint64_t hash = hash_words(table.data(), lambda_stride);
   const auto [first, last] = table_of_hash_.equal_range(hash);
   for (auto it = first; it != last; ++it) {
-    if (std::equal(table.begin(), table.end(), tables_.begin() + it->second * lambda_stride)) return {it->second, scale};
+    if (std::equal(table.begin(), table.end(), tables_.begin() + it->second * lambda_stride))
+      return {it->second, scale};
   }
   const auto index = static_cast<uint32_t>(table_count());
   tables_.resize(tables_.size() + lambda_stride);
@@ -135,8 +137,12 @@ SpectrumResult SpectrumSet::add_rgb(const Color3& rgb, RgbKind kind, ColorSpace 
   if (rgb[0] != rgb[1] || rgb[1] != rgb[2]) {
     const double scale = kind == RgbKind::albedo ? 1.0 : 2.0 * std::max({rgb[0], rgb[1], rgb[2]});
     const SigmoidCoefficients c = fit_sigmoid(space, {rgb[0] / scale, rgb[1] / scale, rgb[2] / scale}).c;
-    row = {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]), static_cast<float>(scale),
-           0, {0, 0, 0}};
+    row = {static_cast<float>(c[0]),
+           static_cast<float>(c[1]),
+           static_cast<float>(c[2]),
+           static_cast<float>(scale),
+           0,
+           {0, 0, 0}};
   }
   if (kind != RgbKind::illuminant) return {append(row), {}};
   const StoredTable white = store_table(white_illuminant(space));
@@ -147,12 +153,14 @@ SpectrumResult SpectrumSet::add_rgb(const Color3& rgb, RgbKind kind, ColorSpace 
 }
 
 SpectrumResult SpectrumSet::add_blackbody(double kelvin) {
-  if (!(kelvin > 0.0 && kelvin <= 1e9)) return failure(fmt::format("temperature {} K: must be above 0 and up to 1e9", kelvin));
+  if (!(kelvin > 0.0 && kelvin <= 1e9))
+    return failure(fmt::format("temperature {} K: must be above 0 and up to 1e9", kelvin));
   return add_samples(blackbody(kelvin));
 }
 
 SpectrumResult SpectrumSet::add_blackbody_normalized(double kelvin) {
-  if (!(kelvin > 0.0 && kelvin <= 1e9)) return failure(fmt::format("temperature {} K: must be above 0 and up to 1e9", kelvin));
+  if (!(kelvin > 0.0 && kelvin <= 1e9))
+    return failure(fmt::format("temperature {} K: must be above 0 and up to 1e9", kelvin));
   constexpr double wien_nm_kelvin = 2.897771955e6;  // CODATA 2018
   const double peak = planck_radiance(kelvin, wien_nm_kelvin / kelvin);
   Samples samples = blackbody(kelvin);

@@ -24,8 +24,7 @@ HWY_INLINE void sample_wavelengths(const WavelengthTable& table, VF u, VF u_rota
   // Products with powers of two: segment and fraction are exact.
   const VF position = hn::Mul(u, splat(static_cast<float>(segments_per_stratum)));
   // The bounds hold for u in [0, 1); they keep whatever is in dead lanes inside the table.
-  const VI within =
-      hn::Max(hn::Min(hn::ConvertTo(di, position), hn::Set(di, segments_per_stratum - 1)), hn::Zero(di));
+  const VI within = hn::Max(hn::Min(hn::ConvertTo(di, position), hn::Set(di, segments_per_stratum - 1)), hn::Zero(di));
   const VF fraction = hn::Sub(position, hn::ConvertTo(d, within));
   const VI rotation = hn::ConvertTo(di, hn::Mul(u_rotation, splat(4.0f)));
   for (int j = 0; j < 4; ++j) {
