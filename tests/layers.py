@@ -26,8 +26,8 @@ rooms = {
 libraries = [
     ("Embree", r"embree\d/", ["systems/build_*", "systems/intersect*", "systems/shadow*", "systems/embree*.h"], None),
     ("OpenVDB", r"(openvdb|nanovdb)/", ["systems/media*"], None),
-    ("OpenImageIO", r"OpenImageIO/", ["engine/film/*", "*/textures*", "*/images*", "*/image_*"], None),
-    ("OpenEXR", r"(OpenEXR/|Imath/|Imf|Imath)", ["engine/film/*"], None),
+    ("OpenImageIO", r"OpenImageIO/", ["engine/files/*", "*/textures*", "*/images*", "*/image_*"], None),
+    ("OpenEXR", r"(OpenEXR/|Imf|Imath)", ["engine/files/*"], None),
     ("oneTBB", r"(oneapi/)?tbb/", ["engine/schedule/*"], None),
     ("jsoncpp", r"json/", ["scenes/*"], None),
     ("CLI11", r"CLI/", ["scenes/program/*"], None),
