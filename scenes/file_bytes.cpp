@@ -1,0 +1,77 @@
+#include "scenes/file_bytes.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <new>
+
+namespace metamer {
+namespace {
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) close(fd_);
+  }
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+}  // namespace
+
+bool read_file(const std::string& path, const SourceLocation& named_at, FileBytes& bytes, Diagnostics& diagnostics) {
+  const auto fail = [&](std::string_view why) {
+    diagnostics.error(named_at, fmt::format("cannot read '{}': {}", path, why));
+    return false;
+  };
+  // A path with a zero byte would be cut short there by the operating system.
+  if (path.empty() || path.find('\0') != std::string::npos) return fail("not a file name");
+  // Non-blocking, so that opening a pipe without a writer returns.
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (file.get() < 0) return fail(std::strerror(errno));
+  struct stat status {};
+  if (fstat(file.get(), &status) != 0) return fail(std::strerror(errno));
+  if (S_ISDIR(status.st_mode)) return fail("it is a folder");
+  if (!S_ISREG(status.st_mode)) return fail("not a regular file");
+
+  const auto size = static_cast<size_t>(status.st_size);
+  try {
+    bytes.data = std::make_unique_for_overwrite<char[]>(std::max<size_t>(size, 1));
+  } catch (const std::bad_alloc&) {
+    return fail(fmt::format("its {} bytes do not fit in memory", size));
+  }
+  bytes.size = 0;
+  while (bytes.size < size) {
+    const ssize_t got = ::read(file.get(), bytes.data.get() + bytes.size, size - bytes.size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return fail(std::strerror(errno));
+    if (got == 0) break;  // shortened meanwhile
+    bytes.size += static_cast<size_t>(got);
+  }
+  return true;
+}
+
+std::string resolve_path(const std::string& path, const std::string& named_in) {
+  return (std::filesystem::path(named_in).parent_path() / path).string();
+}
+
+std::string file_extension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return extension;
+}
+
+}  // namespace metamer
