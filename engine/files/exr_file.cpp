@@ -1,0 +1,271 @@
+// The only file that knows OpenEXR.
+#include "engine/files/exr_file.h"
+
+#include <Iex.h>
+#include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputPart.h>
+#include <ImfIntAttribute.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace metamer {
+namespace {
+
+constexpr const char* film_part = "film";
+constexpr int film_layout_version = 1;
+constexpr int rows_per_block = 16;  // what one ZIP block of the format holds
+constexpr uint32_t limb_count = 4;  // 32-bit limbs of a sum, the least significant first
+constexpr uint32_t words_per_pixel = replicate_count * (3 * limb_count + 1);
+const std::string settings_prefix = "metamer:";
+
+// OpenEXR writes through this into the atomic file; what goes wrong there stops it.
+class ExrStream : public Imf::OStream {
+ public:
+  ExrStream(const std::string& path, AtomicFile& file) : OStream(path.c_str()), file_(file) {}
+  void write(const char bytes[], int count) override { check(file_.write(bytes, static_cast<size_t>(count))); }
+  uint64_t tellp() override { return file_.position(); }
+  void seekp(uint64_t position) override { check(file_.seek(position)); }
+
+ private:
+  static void check(const FileError& error) {
+    if (error) throw Iex::IoExc(*error);
+  }
+  AtomicFile& file_;
+};
+
+int clamped_int(uint64_t value) {
+  return static_cast<int>(std::min<uint64_t>(value, INT32_MAX));
+}
+
+void describe(Imf::Header& exr, const FrameHeader& header) {
+  const auto v2f = [](const std::array<float, 2>& xy) { return Imath::V2f(xy[0], xy[1]); };
+  const Chromaticities& c = header.chromaticities;
+  Imf::addChromaticities(exr, Imf::Chromaticities(v2f(c.red), v2f(c.green), v2f(c.blue), v2f(c.white)));
+  Imf::addWhiteLuminance(exr, 1.0f);
+  exr.insert("software", Imf::StringAttribute(header.software));
+  exr.insert("scene", Imf::StringAttribute(header.scene));
+  exr.insert("seed", Imf::StringAttribute(std::to_string(header.seed)));
+  for (const auto& [name, value] : header.settings) exr.insert(settings_prefix + name, Imf::StringAttribute(value));
+}
+
+Imf::Header picture_header(const Picture& picture, const FrameHeader& header, const SampleTotals& samples,
+                           bool has_film) {
+  Imf::Header exr(static_cast<int>(picture.width), static_cast<int>(picture.height));
+  exr.compression() = Imf::ZIP_COMPRESSION;
+  for (const char* name : {"R", "G", "B"}) exr.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  describe(exr, header);
+  exr.insert("samples", Imf::IntAttribute(clamped_int(samples.most)));
+  exr.insert("samplesFewest", Imf::IntAttribute(clamped_int(samples.fewest)));
+  exr.insert("checkpoint", Imf::StringAttribute(has_film ? "part 'film'" : "left out (preview only)"));
+  exr.setName("picture");
+  exr.setType(Imf::SCANLINEIMAGE);
+  return exr;
+}
+
+std::string sum_channel(uint32_t replicate, int channel, uint32_t limb) {
+  return fmt::format("replicate{}.{}.limb{}", replicate, "XYZ"[channel], limb);
+}
+
+// Every channel of the film part with its place in the words of a pixel.
+std::vector<std::pair<std::string, uint32_t>> film_channels() {
+  std::vector<std::pair<std::string, uint32_t>> channels;
+  uint32_t word = 0;
+  for (uint32_t r = 0; r < replicate_count; ++r) {
+    for (int c = 0; c < 3; ++c)
+      for (uint32_t limb = 0; limb < limb_count; ++limb) channels.emplace_back(sum_channel(r, c, limb), word++);
+    channels.emplace_back(fmt::format("replicate{}.samples", r), word++);
+  }
+  return channels;
+}
+
+Imf::Header film_header(const Film& film, const FrameHeader& header) {
+  Imf::Header exr(static_cast<int>(film.width()), static_cast<int>(film.height()));
+  exr.compression() = Imf::ZIP_COMPRESSION;
+  for (const auto& [name, word] : film_channels()) exr.channels().insert(name, Imf::Channel(Imf::UINT));
+  describe(exr, header);
+  exr.insert("filmLayoutVersion", Imf::IntAttribute(film_layout_version));
+  exr.insert("invalidSamples", Imf::StringAttribute(std::to_string(film.invalid_samples())));
+  exr.setName(film_part);
+  exr.setType(Imf::SCANLINEIMAGE);
+  return exr;
+}
+
+// A frame buffer over one block of rows of words, of which `first_row` is the first.
+Imf::FrameBuffer block_buffer(std::vector<uint32_t>& words, uint32_t width, int first_row) {
+  const size_t x_stride = words_per_pixel * sizeof(uint32_t), y_stride = x_stride * width;
+  char* origin = reinterpret_cast<char*>(words.data()) - static_cast<ptrdiff_t>(y_stride) * first_row;
+  Imf::FrameBuffer buffer;
+  for (const auto& [name, word] : film_channels())
+    buffer.insert(name, Imf::Slice(Imf::UINT, origin + word * sizeof(uint32_t), x_stride, y_stride));
+  return buffer;
+}
+
+void pack(const PixelSums& sums, const PixelCounts& counts, uint32_t* words) {
+  for (uint32_t r = 0; r < replicate_count; ++r) {
+    for (const FixedSum sum : sums.xyz[r])
+      for (uint32_t limb = 0; limb < limb_count; ++limb)
+        *words++ = static_cast<uint32_t>(static_cast<unsigned __int128>(sum) >> (32 * limb));
+    *words++ = counts.replicate[r];
+  }
+}
+
+// False where the words cannot have come from a film: more samples than allowed, or a sum that they cannot reach.
+bool unpack(const uint32_t* words, PixelSums& sums, PixelCounts& counts) {
+  bool sound = true;
+  for (uint32_t r = 0; r < replicate_count; ++r) {
+    for (FixedSum& sum : sums.xyz[r]) {
+      unsigned __int128 value = 0;
+      for (uint32_t limb = 0; limb < limb_count; ++limb)
+        value |= static_cast<unsigned __int128>(*words++) << (32 * limb);
+      sum = static_cast<FixedSum>(value);
+    }
+    counts.replicate[r] = *words++;
+    const FixedSum largest = to_fixed(sample_limit) * std::min(counts.replicate[r], max_samples_per_pixel);
+    for (const FixedSum sum : sums.xyz[r]) sound = sound && sum <= largest && sum >= -largest;
+  }
+  return sound && counts.total() <= max_samples_per_pixel;
+}
+
+void write_picture(Imf::OutputPart part, const Picture& picture) {
+  const size_t y_stride = sizeof(float) * picture.width;
+  const auto slice = [&](const Column<float>& column) {
+    char* values = reinterpret_cast<char*>(const_cast<float*>(column.data()));  // only read when writing a file
+    return Imf::Slice(Imf::FLOAT, values, sizeof(float), y_stride);
+  };
+  Imf::FrameBuffer buffer;
+  buffer.insert("R", slice(picture.r));
+  buffer.insert("G", slice(picture.g));
+  buffer.insert("B", slice(picture.b));
+  part.setFrameBuffer(buffer);
+  part.writePixels(static_cast<int>(picture.height));
+}
+
+void write_film(Imf::OutputPart part, const Film& film) {
+  std::vector<uint32_t> words(size_t{film.width()} * rows_per_block * words_per_pixel);
+  for (uint32_t row = 0; row < film.height(); row += rows_per_block) {
+    const uint32_t rows = std::min<uint32_t>(rows_per_block, film.height() - row);
+    const size_t first = size_t{row} * film.width();
+    for (size_t i = 0; i < size_t{rows} * film.width(); ++i)
+      pack(film.sums()[first + i], film.counts()[first + i], words.data() + i * words_per_pixel);
+    part.setFrameBuffer(block_buffer(words, film.width(), static_cast<int>(row)));
+    part.writePixels(static_cast<int>(rows));
+  }
+}
+
+std::string text(const Imf::Header& exr, const std::string& name) {
+  const auto* attribute = exr.findTypedAttribute<Imf::StringAttribute>(name);
+  return attribute == nullptr ? "" : attribute->value();
+}
+
+bool parse_number(const std::string& digits, uint64_t& value) {
+  const auto [end, failed] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  return failed == std::errc() && end == digits.data() + digits.size();
+}
+
+bool read_header(const Imf::Header& exr, FrameHeader& header) {
+  header = {};
+  header.software = text(exr, "software");
+  header.scene = text(exr, "scene");
+  if (Imf::hasChromaticities(exr)) {
+    const Imf::Chromaticities& c = Imf::chromaticities(exr);
+    header.chromaticities = {{c.red.x, c.red.y}, {c.green.x, c.green.y}, {c.blue.x, c.blue.y}, {c.white.x, c.white.y}};
+  }
+  for (auto it = exr.begin(); it != exr.end(); ++it)
+    if (const std::string name = it.name(); name.starts_with(settings_prefix))
+      header.settings.emplace_back(name.substr(settings_prefix.size()), text(exr, name));
+  return parse_number(text(exr, "seed"), header.seed);
+}
+
+int find_film_part(const Imf::MultiPartInputFile& file) {
+  for (int part = 0; part < file.parts(); ++part)
+    if (file.header(part).hasName() && file.header(part).name() == film_part) return part;
+  return -1;
+}
+
+FileError read_film_pixels(const std::string& path, Imf::InputPart part, Film& film) {
+  std::vector<uint32_t> words(size_t{film.width()} * rows_per_block * words_per_pixel);
+  for (uint32_t row = 0; row < film.height(); row += rows_per_block) {
+    const uint32_t rows = std::min<uint32_t>(rows_per_block, film.height() - row);
+    part.setFrameBuffer(block_buffer(words, film.width(), static_cast<int>(row)));
+    part.readPixels(static_cast<int>(row), static_cast<int>(row + rows - 1));
+    const size_t first = size_t{row} * film.width();
+    for (size_t i = 0; i < size_t{rows} * film.width(); ++i)
+      if (!unpack(words.data() + i * words_per_pixel, film.sums()[first + i], film.counts()[first + i]))
+        return fmt::format("{}: the film is damaged at pixel {},{}: its sums and sample counts do not agree", path,
+                           i % film.width(), row + i / film.width());
+  }
+  return std::nullopt;
+}
+
+FileError read_checkpoint(const std::string& path, Film& film, FrameHeader& header) {
+  Imf::MultiPartInputFile file(path.c_str());
+  const int number = find_film_part(file);
+  if (number < 0) return fmt::format("{}: holds no film part, so it is a picture but not a checkpoint", path);
+  const Imf::Header& exr = file.header(number);
+  const auto* version = exr.findTypedAttribute<Imf::IntAttribute>("filmLayoutVersion");
+  if (version == nullptr || version->value() != film_layout_version)
+    return fmt::format("{}: its film has layout version {}, {} was expected", path,
+                       version == nullptr ? "none" : std::to_string(version->value()), film_layout_version);
+  const Imath::Box2i window = exr.dataWindow();
+  if (window.min != Imath::V2i(0, 0)) return fmt::format("{}: its film does not start at pixel 0,0", path);
+  for (const auto& [name, word] : film_channels())
+    if (const Imf::Channel* channel = exr.channels().findChannel(name);
+        channel == nullptr || channel->type != Imf::UINT)
+      return fmt::format("{}: its film has no UINT channel '{}'", path, name);
+  if (!file.partComplete(number)) return fmt::format("{}: the film is incomplete, the file was cut short", path);
+  const int64_t columns = int64_t{window.max.x} + 1, rows = int64_t{window.max.y} + 1;
+  if (const FileError error = check_frame_size(static_cast<uint64_t>(columns), static_cast<uint64_t>(rows)))
+    return fmt::format("{}: {}", path, *error);
+  Film read(static_cast<uint32_t>(columns), static_cast<uint32_t>(rows));
+  FrameHeader read_as;
+  uint64_t invalid_samples = 0;
+  if (!read_header(exr, read_as) || !parse_number(text(exr, "invalidSamples"), invalid_samples))
+    return fmt::format("{}: the film's seed or number of refused samples is missing", path);
+  read.set_invalid_samples(invalid_samples);
+  if (const FileError error = read_film_pixels(path, Imf::InputPart(file, number), read)) return error;
+  film = std::move(read);
+  header = std::move(read_as);
+  return std::nullopt;
+}
+
+}  // namespace
+
+FileError write_exr(const std::string& path, const Picture& picture, const FrameHeader& header,
+                    const SampleTotals& samples, const Film* checkpoint) {
+  AtomicFile file;
+  if (const FileError error = file.open(path)) return error;
+  try {
+    std::vector<Imf::Header> parts = {picture_header(picture, header, samples, checkpoint != nullptr)};
+    if (checkpoint != nullptr) parts.push_back(film_header(*checkpoint, header));
+    ExrStream stream(path, file);
+    Imf::MultiPartOutputFile exr(stream, parts.data(), static_cast<int>(parts.size()));
+    write_picture(Imf::OutputPart(exr, 0), picture);
+    if (checkpoint != nullptr) write_film(Imf::OutputPart(exr, 1), *checkpoint);
+  } catch (const std::exception& error) {
+    const FileError cause = file.error();
+    return cause ? cause : fmt::format("{}: writing failed: {}", path, error.what());
+  }
+  return file.commit();
+}
+
+FileError read_film(const std::string& path, Film& film, FrameHeader& header) {
+  try {
+    return read_checkpoint(path, film, header);
+  } catch (const std::exception& error) {
+    return fmt::format("{}: cannot be read: {}", path, error.what());
+  }
+}
+
+}  // namespace metamer

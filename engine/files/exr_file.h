@@ -1,0 +1,34 @@
+// OpenEXR files, see docs/output.md. Part 0 is the picture that every viewer opens: 32-bit float R G B. The
+// part `film`, where there is one, holds the film's exact sums, which makes the file a checkpoint.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/files/atomic_file.h"
+#include "engine/film/film.h"
+#include "engine/film/picture.h"
+
+namespace metamer {
+
+// What a file says about its frame. Nothing here may depend on when, where or on how many threads it was made.
+struct FrameHeader {
+  Chromaticities chromaticities;
+  std::string software;  // "metamer <version>"
+  std::string scene;     // its name
+  uint64_t seed = 0;
+  std::vector<std::pair<std::string, std::string>> settings;  // written as `metamer:<name>`, in any order
+};
+
+// Writes `picture`; where `checkpoint` is not null also the film it was developed from. Equal arguments give
+// equal bytes. `samples` goes into the header.
+FileError write_exr(const std::string& path, const Picture& picture, const FrameHeader& header,
+                    const SampleTotals& samples, const Film* checkpoint);
+
+// Reads the film out of a checkpoint, and the header with its settings in the order of their names. An error
+// where there is no film in the file, it is damaged, cut short or does not fit in memory; then `film` and
+// `header` are as they were.
+FileError read_film(const std::string& path, Film& film, FrameHeader& header);
+
+}  // namespace metamer

@@ -1,0 +1,27 @@
+// Tone mapping: linear colour to the 8-bit codes of an sRGB display. Works on the developed colour and never
+// changes what the film recorded.
+#pragma once
+#include <cstddef>
+
+#include "engine/film/picture.h"
+
+namespace metamer {
+
+struct ToneSettings {
+  float exposure_stops = 0;  // colour times 2^stops; [-100, 100], beyond is clamped, not-a-number is 0
+  bool dither = true;
+};
+
+// Clips what is outside the display's gamut to [0, 1]; not-a-number becomes 0. With dither a value between two
+// codes takes the upper one at that fraction of the pixels, where depends on the pixel's position alone and is
+// one for R, G and B, so that grey stays grey; codes met exactly, 0 and 255 among them, stay. Without dither
+// the nearest code. Equal codes on every instruction set.
+CodedPicture tone_map(const Picture& picture, const ToneSettings& settings);
+
+// For columns of `count` values (padded): the encoded value, [0, 1], see srgb_encode in tone_map-inl.h.
+void srgb_encode(size_t count, const float* linear, float* encoded);
+
+// The scalar definition: IEC 61966-2-1:1999, clipped to [0, 1].
+double srgb_encode_scalar(double linear);
+
+}  // namespace metamer
