@@ -173,7 +173,7 @@ BsdfSample sample_dielectric(const Direction& wo, const DielectricOptics& optics
     const double eta = side > 0 ? eta_j : 1 / eta_j;
     f[j] = optics.schlick ? schlick_dielectric(eta, cos_theta_o) : fresnel_dielectric(eta, cos_theta_o);
   }
-  const double p_reflect = optics.dispersive ? (f[0] + f[1] + f[2] + f[3]) / 4 : f[0];
+  const double p_reflect = optics.dispersive && f[0] < 1 ? (f[0] + f[1] + f[2] + f[3]) / 4 : f[0];
   const double hero_eta = side > 0 ? optics.eta[0] : 1 / optics.eta[0];
   if (u < p_reflect) {
     sample.wi = {-wo.x, -wo.y, wo.z};

@@ -133,5 +133,47 @@ TEST(BsdfTwin, ConductorSamplesStayWithinTheirStatedError) {
   });
 }
 
+TEST(BsdfTwin, DielectricSamplesStayWithinTheirStatedError) {
+  Random random(6);
+  std::vector<BsdfCase> cases = random_metals(300000);
+  for (BsdfCase& c : cases) {
+    c.dispersive = random.uniform() < 0.5f ? 1 : 0;
+    c.eta[0] = std::pow(2.5f, 2 * random.uniform() - 1);
+    for (int j = 1; j < 4; ++j) c.eta[j] = c.eta[0] * (1 + 0.1f * random.uniform());
+  }
+  on_every_target([&] {
+    const std::vector<BsdfResult> samples = run_sample_dielectric(cases);
+    double direction_error = 0, weight_error = 0, probability_error = 0;
+    size_t lobe_mismatches = 0;
+    for (size_t i = 0; i < cases.size(); ++i) {
+      const BsdfCase& c = cases[i];
+      const auto near_critical = [&](float eta) {
+        const double relative_eta = c.wo[2] > 0 ? eta : 1.0 / eta, cos_theta = c.wo[2];
+        return std::abs(relative_eta * relative_eta - 1 + cos_theta * cos_theta) < 1e-3;
+      };
+      if (std::any_of(c.eta, c.eta + 4, near_critical)) continue;
+      const reference::BsdfSample sample = reference::sample_dielectric(
+          direction(c.wo), {spectrum(c.eta), c.schlick == 1, c.dispersive == 1}, c.u);
+      if ((samples[i].transmitted == 1) != sample.transmitted) {  // u within rounding of the probability
+        ++lobe_mismatches;
+        continue;
+      }
+      EXPECT_EQ(samples[i].terminate_secondary == 1, sample.terminate_secondary);
+      const Direction wi = direction(samples[i].wi);
+      direction_error = std::max(
+          {direction_error, std::abs(wi.x - sample.wi.x), std::abs(wi.y - sample.wi.y), std::abs(wi.z - sample.wi.z)});
+      for (size_t j = 0; j < 4; ++j) {
+        weight_error = std::max(weight_error, std::abs(samples[i].value[j] - sample.weight[j]));
+      }
+      probability_error = std::max(probability_error, std::abs(samples[i].pdf - sample.pdf));
+    }
+    printf("%g %g %g %zu\n", direction_error, weight_error, probability_error, lobe_mismatches);
+    EXPECT_LT(direction_error, 1e-5);
+    EXPECT_LT(weight_error, 2e-4);
+    EXPECT_LT(probability_error, 2e-5);
+    EXPECT_LT(lobe_mismatches, 10u);
+  });
+}
+
 }  // namespace
 }  // namespace metamer::testing

@@ -8,6 +8,7 @@
 #include "hwy/foreach_target.h"
 //
 #include "hwy/highway.h"
+#include "systems/bsdf/dielectric-inl.h"
 #include "systems/bsdf/diffuse-inl.h"
 #include "systems/bsdf/ggx-inl.h"
 
@@ -112,6 +113,23 @@ std::vector<BsdfResult> SampleConductor(const std::vector<BsdfCase>& cases) {
     return r;
   });
 }
+std::vector<BsdfResult> SampleDielectric(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) {
+    DielectricOptics optics;
+    for (int j = 0; j < 4; ++j) optics.eta[j] = a.eta[j];
+    optics.schlick = a.schlick;
+    optics.dispersive = a.dispersive;
+    const DielectricSample sample = sample_dielectric(a.wo, optics, a.u);
+    Results r = nothing();
+    r.wi = sample.wi;
+    for (int j = 0; j < 4; ++j) r.value[j] = sample.weight[j];
+    r.pdf = sample.probability;
+    r.delta = splat(1.0f);
+    r.transmitted = flag(sample.transmitted);
+    r.terminate_secondary = flag(sample.terminate_secondary);
+    return r;
+  });
+}
 
 }  // namespace
 }  // namespace metamer::HWY_NAMESPACE
@@ -123,6 +141,7 @@ HWY_EXPORT(EvalDiffuse);
 HWY_EXPORT(SampleDiffuse);
 HWY_EXPORT(EvalConductor);
 HWY_EXPORT(SampleConductor);
+HWY_EXPORT(SampleDielectric);
 
 namespace testing {
 std::vector<BsdfResult> run_eval_diffuse(const std::vector<BsdfCase>& cases) {
@@ -136,6 +155,9 @@ std::vector<BsdfResult> run_eval_conductor(const std::vector<BsdfCase>& cases) {
 }
 std::vector<BsdfResult> run_sample_conductor(const std::vector<BsdfCase>& cases) {
   return HWY_DYNAMIC_DISPATCH(SampleConductor)(cases);
+}
+std::vector<BsdfResult> run_sample_dielectric(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(SampleDielectric)(cases);
 }
 }  // namespace testing
 }  // namespace metamer

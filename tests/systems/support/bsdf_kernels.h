@@ -29,6 +29,7 @@ std::vector<BsdfResult> run_eval_diffuse(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_sample_diffuse(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_eval_conductor(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_sample_conductor(const std::vector<BsdfCase>& cases);
+std::vector<BsdfResult> run_sample_dielectric(const std::vector<BsdfCase>& cases);
 
 // Runs body once per instruction set this machine has.
 template <class Body>
