@@ -1,6 +1,6 @@
-// The smooth boundary of a transparent medium, four wavelengths at a time: a mirror and a refracted direction, both delta
-// lobes. Directions are unit vectors in the local shading frame (z = shading normal, out of the medium) and point away
-// from the surface. Scalar double twin: reference.h.
+// The smooth boundary of a transparent medium, four wavelengths at a time: a mirror and a refracted direction, both
+// delta lobes. Directions are unit vectors in the local shading frame (z = shading normal, out of the medium) and point
+// away from the surface. Scalar double twin: reference.h.
 //
 // Which lobe is drawn. Without dispersion all four wavelengths share one eta, one direction and one F: the lobe is
 // reflected with probability F, and all four go on. With dispersion the mirror direction is still common to all, the

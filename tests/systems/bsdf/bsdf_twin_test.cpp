@@ -3,65 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <random>
 #include <vector>
 
-#include "systems/bsdf/limits.h"
 #include "systems/bsdf/reference.h"
+#include "tests/support/each_target.h"
+#include "tests/systems/bsdf/cases.h"
 #include "tests/systems/support/bsdf_kernels.h"
 
 namespace metamer::testing {
 namespace {
 using reference::Direction;
-using reference::Spectrum4;
-
-Direction direction(const float w[3]) { return {w[0], w[1], w[2]}; }
-Spectrum4 spectrum(const float s[4]) { return {s[0], s[1], s[2], s[3]}; }
-reference::Roughness roughness(const BsdfCase& c) { return {c.alpha_x, c.alpha_y}; }
-reference::ConductorOptics metal(const BsdfCase& c) { return {spectrum(c.eta), spectrum(c.kappa), c.schlick == 1}; }
-
-class Random {
- public:
-  explicit Random(uint32_t seed) : engine_(seed) {}
-  float uniform() { return std::uniform_real_distribution<float>(0, 1)(engine_); }
-  void direction(float w[3]) {
-    const float z = 2 * uniform() - 1, phi = 2 * std::numbers::pi_v<float> * uniform();
-    const Direction unit = reference::normalize(
-        {std::sqrt(1 - z * z) * std::cos(phi), std::sqrt(1 - z * z) * std::sin(phi), z == 0 ? 0.5f : z});
-    w[0] = float(unit.x), w[1] = float(unit.y), w[2] = float(unit.z);
-  }
-
- private:
-  std::mt19937 engine_;
-};
-
-// Directions over the whole sphere; alphas from smooth to 1, in half of the cases equal, in some 0.
-std::vector<BsdfCase> random_metals(size_t count) {
-  Random random(5);
-  std::vector<BsdfCase> cases(count);
-  for (BsdfCase& c : cases) {
-    random.direction(c.wo);
-    random.direction(c.wi);
-    c.u = std::min(random.uniform(), 0x1.fffffep-1f), c.v = std::min(random.uniform(), 0x1.fffffep-1f);
-    c.alpha_x = std::pow(10.0f, -4 * random.uniform());
-    c.alpha_y = random.uniform() < 0.5f ? c.alpha_x : std::pow(10.0f, -4 * random.uniform());
-    if (random.uniform() < 0.05f) c.alpha_x = 0;
-    for (int j = 0; j < 4; ++j) {
-      c.albedo[j] = random.uniform();
-      c.eta[j] = 0.05f + 4 * random.uniform();
-      c.kappa[j] = 0.5f + 6 * random.uniform();
-    }
-    c.schlick = random.uniform() < 0.5f ? 1 : 0;
-  }
-  return cases;
-}
 
 double relative(double a, double b) { return a == b ? 0 : std::abs(a - b) / std::max(std::abs(b), 1e-30); }
 
 TEST(BsdfTwin, DiffuseStaysWithinItsStatedError) {
   const std::vector<BsdfCase> cases = random_metals(100000);
-  on_every_target([&] {
+  for_each_target([&] {
     const std::vector<BsdfResult> values = run_eval_diffuse(cases), samples = run_sample_diffuse(cases);
     double value_error = 0, direction_error = 0, pdf_error = 0;
     for (size_t i = 0; i < cases.size(); ++i) {
@@ -86,7 +43,7 @@ TEST(BsdfTwin, DiffuseStaysWithinItsStatedError) {
 
 TEST(BsdfTwin, ConductorEvaluationStaysWithinItsStatedError) {
   const std::vector<BsdfCase> cases = random_metals(300000);
-  on_every_target([&] {
+  for_each_target([&] {
     const std::vector<BsdfResult> values = run_eval_conductor(cases);
     double f_error = 0, pdf_error = 0;
     for (size_t i = 0; i < cases.size(); ++i) {
@@ -103,7 +60,7 @@ TEST(BsdfTwin, ConductorEvaluationStaysWithinItsStatedError) {
 
 TEST(BsdfTwin, ConductorSamplesStayWithinTheirStatedError) {
   const std::vector<BsdfCase> cases = random_metals(300000);
-  on_every_target([&] {
+  for_each_target([&] {
     const std::vector<BsdfResult> samples = run_sample_conductor(cases);
     double direction_error = 0, weight_error = 0, pdf_error = 0;
     size_t void_mismatches = 0;
@@ -141,7 +98,7 @@ TEST(BsdfTwin, DielectricSamplesStayWithinTheirStatedError) {
     c.eta[0] = std::pow(2.5f, 2 * random.uniform() - 1);
     for (int j = 1; j < 4; ++j) c.eta[j] = c.eta[0] * (1 + 0.1f * random.uniform());
   }
-  on_every_target([&] {
+  for_each_target([&] {
     const std::vector<BsdfResult> samples = run_sample_dielectric(cases);
     double direction_error = 0, weight_error = 0, probability_error = 0;
     size_t lobe_mismatches = 0;
@@ -152,8 +109,8 @@ TEST(BsdfTwin, DielectricSamplesStayWithinTheirStatedError) {
         return std::abs(relative_eta * relative_eta - 1 + cos_theta * cos_theta) < 1e-3;
       };
       if (std::any_of(c.eta, c.eta + 4, near_critical)) continue;
-      const reference::BsdfSample sample = reference::sample_dielectric(
-          direction(c.wo), {spectrum(c.eta), c.schlick == 1, c.dispersive == 1}, c.u);
+      const reference::BsdfSample sample =
+          reference::sample_dielectric(direction(c.wo), {spectrum(c.eta), c.schlick == 1, c.dispersive == 1}, c.u);
       if ((samples[i].transmitted == 1) != sample.transmitted) {  // u within rounding of the probability
         ++lobe_mismatches;
         continue;
@@ -167,7 +124,6 @@ TEST(BsdfTwin, DielectricSamplesStayWithinTheirStatedError) {
       }
       probability_error = std::max(probability_error, std::abs(samples[i].pdf - sample.pdf));
     }
-    printf("%g %g %g %zu\n", direction_error, weight_error, probability_error, lobe_mismatches);
     EXPECT_LT(direction_error, 1e-5);
     EXPECT_LT(weight_error, 2e-4);
     EXPECT_LT(probability_error, 2e-5);

@@ -10,7 +10,7 @@
 
 #include "systems/bsdf/limits.h"
 #include "systems/bsdf/reference.h"
-#include "tests/systems/support/bsdf_kernels.h"
+#include "tests/support/each_target.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tests/systems/bsdf/fresnel_test.cpp"
@@ -130,7 +130,7 @@ FresnelRow conductor(float n, float kappa, double cos_theta_i) {
 }
 
 TEST(Fresnel, GlassReflectsFourPercentAtNormalIncidence) {
-  on_every_target([] {
+  for_each_target([] {
     EXPECT_NEAR(dielectric(1.5f, 1).exact, 0.04, 1e-7);
     EXPECT_NEAR(dielectric(1 / 1.5f, 1).exact, 0.04, 1e-7);
     EXPECT_NEAR(dielectric(1.5f, 1).schlick, 0.04, 1e-7);
@@ -148,13 +148,13 @@ TEST(Fresnel, AtBrewstersAngleOnlyTheSTermIsLeft) {
   // There r_s = (1 - n^2) / (1 + n^2), from tan(theta_i) = n in the Fresnel equations.
   const double r_s = (1 - 2.25) / (1 + 2.25);
   EXPECT_NEAR(r.s, r_s * r_s, 1e-15);
-  on_every_target([&] { EXPECT_NEAR(dielectric(1.5f, std::cos(brewster)).exact, r_s * r_s / 2, 2e-7); });
+  for_each_target([&] { EXPECT_NEAR(dielectric(1.5f, std::cos(brewster)).exact, r_s * r_s / 2, 2e-7); });
 }
 
 // Hecht, Optics, table 4.2: the critical angle of n = 1.50 is 41.8103 degrees.
 TEST(Fresnel, ReflectionIsTotalBeyondTheCriticalAngleAndOnlyThere) {
   EXPECT_NEAR(std::asin(1 / 1.5) / degree, 41.8103, 5e-5);
-  on_every_target([] {
+  for_each_target([] {
     const float eta = 1 / 1.5f;
     for (double above = 0.01; above < 48; above += 0.5) {
       const FresnelRow row = dielectric(eta, std::cos((41.8103 + above) * degree));
@@ -186,7 +186,7 @@ TEST(Fresnel, GoldAndCopperAtNormalIncidenceAreThePublishedMetals) {
       {"gold, 616.8 nm", 0.21f, 3.272f, 0.93098},   {"copper, 450.9 nm", 1.24f, 2.397f, 0.53917},
       {"copper, 548.6 nm", 1.02f, 2.577f, 0.61945}, {"copper, 616.8 nm", 0.3f, 3.205f, 0.89968},
   };
-  on_every_target([&] {
+  for_each_target([&] {
     for (const Metal& m : metals) {
       EXPECT_NEAR(conductor(m.n, m.kappa, 1).exact, m.reflectance, 5e-5) << m.name;
       EXPECT_NEAR(conductor(m.n, m.kappa, 1).schlick, m.reflectance, 5e-5) << m.name;
@@ -195,7 +195,7 @@ TEST(Fresnel, GoldAndCopperAtNormalIncidenceAreThePublishedMetals) {
 }
 
 TEST(Fresnel, GrazingIncidenceReflectsEverything) {
-  on_every_target([] {
+  for_each_target([] {
     for (const float eta : {0.4f, 0.75f, 1.00001f, 1.33f, 1.5f, 2.4f, 10.0f}) {
       EXPECT_EQ(dielectric(eta, 0).exact, 1.0f) << eta;
       EXPECT_NEAR(dielectric(eta, 1e-7).exact, 1.0, eta == 1.00001f ? 1e-3 : 1e-5) << eta;
@@ -208,7 +208,7 @@ TEST(Fresnel, GrazingIncidenceReflectsEverything) {
 }
 
 TEST(Fresnel, AMediumThatIsNotThereReflectsNothing) {
-  on_every_target([] {
+  for_each_target([] {
     for (const double c : {0.0, 1e-6, 0.3, 1.0}) {
       EXPECT_EQ(dielectric(1, c).exact, 0.0f) << c;
       EXPECT_NEAR(conductor(1, 0, c).exact, 0, 1e-12) << c;
@@ -218,13 +218,13 @@ TEST(Fresnel, AMediumThatIsNotThereReflectsNothing) {
 }
 
 TEST(Fresnel, APerfectConductorReflectsExactlyEverything) {
-  on_every_target([] {
+  for_each_target([] {
     for (const double c : {0.0, 0.01, 0.5, 1.0}) EXPECT_EQ(conductor(1, 1e8f, c).exact, 1.0f) << c;
   });
 }
 
 TEST(Fresnel, BothSidesOfABoundaryReflectTheSame) {
-  on_every_target([] {
+  for_each_target([] {
     for (const float eta : {1.1f, 1.5f, 2.4f}) {
       for (int k = 1; k <= 100; ++k) {
         const FresnelRow outside = dielectric(eta, k * 0.01);
@@ -266,7 +266,7 @@ std::vector<FresnelRow> random_rows(bool metal, size_t count) {
 }
 
 TEST(Fresnel, DielectricKernelsStayWithinTheirStatedError) {
-  on_every_target([] {
+  for_each_target([] {
     std::vector<FresnelRow> rows = random_rows(false, 300000);
     HWY_DYNAMIC_DISPATCH(FresnelDielectrics)(rows);
     double error[2] = {0, 0}, schlick_error[2] = {0, 0}, cosine_error[2] = {0, 0};
@@ -290,7 +290,7 @@ TEST(Fresnel, DielectricKernelsStayWithinTheirStatedError) {
 }
 
 TEST(Fresnel, ConductorKernelsStayWithinTheirStatedError) {
-  on_every_target([] {
+  for_each_target([] {
     std::vector<FresnelRow> rows = random_rows(true, 300000);
     HWY_DYNAMIC_DISPATCH(FresnelConductors)(rows);
     double error[2] = {0, 0}, schlick_error[2] = {0, 0};
@@ -311,7 +311,7 @@ TEST(Fresnel, ConductorKernelsStayWithinTheirStatedError) {
 }
 
 TEST(Fresnel, ReflectedAndRefractedDirectionsMatchTheirTwins) {
-  on_every_target([] {
+  for_each_target([] {
     double errors[2];
     HWY_DYNAMIC_DISPATCH(DirectionErrors)(errors);
     EXPECT_LT(errors[0], 1e-6);

@@ -31,26 +31,4 @@ std::vector<BsdfResult> run_eval_conductor(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_sample_conductor(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_sample_dielectric(const std::vector<BsdfCase>& cases);
 
-// Runs body once per instruction set this machine has.
-template <class Body>
-void on_every_target(Body body);
-
-}  // namespace metamer::testing
-
-#include <gtest/gtest.h>
-
-#include "hwy/targets.h"
-
-namespace metamer::testing {
-template <class Body>
-void on_every_target(Body body) {
-  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    body();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
 }  // namespace metamer::testing
