@@ -1,0 +1,327 @@
+// The directives and the graphics state they change.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "scenes/pbrt/reader.h"
+
+namespace metamer::pbrt {
+namespace {
+
+constexpr size_t most_mistakes = 1000;  // reading stops here: the file is probably not a pbrt file
+
+// Where a directive may stand.
+enum class Where : uint8_t { anywhere, before_world, in_world };
+
+struct Directive {
+  std::string_view name;
+  Where where;
+  void (*read)(Reader&, Tokenizer&, std::string_view, Source);
+};
+
+std::optional<std::string> read_string(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  if (tokens.peek().kind == TokenKind::string) return std::string(tokens.next().text);
+  reader.messages.error(source, fmt::format("{} expects a quoted name, not {}", directive, show(tokens.peek())));
+  tokens.skip_to_directive();
+  return std::nullopt;
+}
+
+// A directive of the form: Name "kind" parameters. Calls read(kind, parameters).
+template <class F>
+void read_with_parameters(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source,
+                          const ParameterList& defaults, F&& read) {
+  const auto kind = read_string(reader, tokens, directive, source);
+  if (!kind) return;
+  const ParameterList list = parse_parameters(tokens, source.file, reader.state.color_space);
+  Parameters parameters(fmt::format("{} \"{}\"", directive, *kind), source, list, defaults, reader.messages);
+  read(*kind, parameters);
+  parameters.report_unused();
+}
+
+template <void (*read)(Reader&, std::string_view, Parameters&)>
+void plain(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  read_with_parameters(reader, tokens, directive, source, {},
+                       [&](const std::string& kind, Parameters& parameters) { read(reader, kind, parameters); });
+}
+
+template <void (*read)(Reader&, std::string_view, Parameters&), AttributeTarget target>
+void with_attributes(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  read_with_parameters(reader, tokens, directive, source, reader.attributes(target),
+                       [&](const std::string& kind, Parameters& parameters) { read(reader, kind, parameters); });
+}
+
+void area_light_source(Reader& reader, std::string_view kind, Parameters& parameters) {
+  reader.state.area_light = read_area_light(reader, kind, parameters);
+}
+
+void material(Reader& reader, std::string_view kind, Parameters& parameters) {
+  reader.state.material = read_material(reader, kind, parameters, reader.scene.registry.create());
+}
+
+// Materials may be used before they are made; the entity is the same.
+NamedMaterial& named_material(Reader& reader, const std::string& name, Source source) {
+  const auto [entry, fresh] = reader.materials.try_emplace(name);
+  if (fresh) {
+    const Entity entity = reader.scene.registry.create();
+    reader.scene.registry.set(entity, Name{reader.scene.names.add(name)});
+    entry->second = {entity, source, false};
+  }
+  return entry->second;
+}
+
+void make_named_material(Reader& reader, std::string_view name, Parameters& parameters) {
+  NamedMaterial& entry = named_material(reader, std::string(name), parameters.source());
+  if (entry.defined) reader.messages.error(parameters.source(), fmt::format("material '{}' is made twice", name));
+  entry.defined = true;
+  if (!parameters.has("type")) parameters.error("type", "'string type' is missing");
+  const std::string kind = parameters.string("type", "diffuse");
+  read_material(reader, kind, parameters, entry.entity);
+}
+
+void use_named_material(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  const auto name = read_string(reader, tokens, directive, source);
+  if (name) reader.state.material = named_material(reader, *name, source).entity;
+}
+
+void make_named_medium(Reader& reader, std::string_view name, Parameters& parameters) {
+  reader.media.emplace(name);
+  parameters.ignore_the_rest();
+  reader.messages.warning_once("media", parameters.source(), "media are not supported yet; space is empty");
+}
+
+void medium_interface(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  if (!read_string(reader, tokens, directive, source)) return;
+  if (tokens.peek().kind == TokenKind::string) tokens.next();
+  reader.messages.warning_once("media", source, "media are not supported yet; space is empty");
+}
+
+// Texture "name" "spectrum" "kind" parameters.
+void texture(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  const auto name = read_string(reader, tokens, directive, source);
+  if (!name) return;
+  const auto type = read_string(reader, tokens, directive, source);
+  if (!type) return;
+  if (*type != "spectrum" && *type != "float") {
+    reader.messages.error(source, fmt::format("a texture is \"spectrum\" or \"float\", not \"{}\"", *type));
+  }
+  reader.textures.insert(*name);
+  read_with_parameters(reader, tokens, directive, source, {}, [&](const std::string& kind, Parameters& parameters) {
+    parameters.ignore_the_rest();
+    reader.messages.warning_once(
+        "texture " + kind, source,
+        fmt::format("texture \"{}\" is not supported yet; what it would colour gets its default value", kind));
+  });
+}
+
+void attribute(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  const auto name = read_string(reader, tokens, directive, source);
+  if (!name) return;
+  ParameterList list = parse_parameters(tokens, source.file, reader.state.color_space);
+  const auto found = std::find(std::begin(attribute_targets), std::end(attribute_targets), *name);
+  if (found == std::end(attribute_targets)) {
+    return reader.messages.error(
+        source, fmt::format("Attribute expects shape, light, material, medium or texture, not \"{}\"{}", *name,
+                            did_you_mean(*name, attribute_targets)));
+  }
+  // The latest word on a parameter counts.
+  ParameterList& all = reader.state.attributes[found - std::begin(attribute_targets)];
+  for (const Parameter& parameter : list)
+    std::erase_if(all, [&](const Parameter& old) { return old.name == parameter.name; });
+  all.insert(all.end(), std::make_move_iterator(list.begin()), std::make_move_iterator(list.end()));
+}
+
+void color_space(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  const auto name = read_string(reader, tokens, directive, source);
+  if (!name) return;
+  if (const auto space = find_color_space(*name)) {
+    reader.state.color_space = *space;
+  } else {
+    reader.messages.error(
+        source, fmt::format("there is no colour space '{}'{}", *name, did_you_mean(*name, color_space_names())));
+  }
+}
+
+void option(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  const auto name = read_string(reader, tokens, directive, source);
+  if (!name) return;
+  if (tokens.peek().kind == TokenKind::end || looks_like_directive(tokens.peek())) {
+    return reader.messages.error(source, fmt::format("Option \"{}\" has no value", *name));
+  }
+  const Token value = tokens.next();
+  const auto number = parse_number(value.text);
+  if (*name == "seed" && number && *number >= 0 && *number <= std::numeric_limits<int32_t>::max()) {
+    reader.scene.settings.seed = static_cast<uint32_t>(*number);
+  } else if (*name == "seed") {
+    reader.messages.error(source, fmt::format("Option \"seed\" expects a non-negative integer, not {}", show(value)));
+  } else {
+    reader.messages.warning_once("option " + *name, source,
+                                 fmt::format("Option \"{}\" is not supported; it changes nothing", *name));
+  }
+}
+
+void accelerator(Reader& reader, std::string_view, Parameters& parameters) {
+  parameters.ignore_the_rest();
+  reader.messages.note_once("accelerator", parameters.source(), parameters.what() + ": Embree's is always used");
+}
+
+void push(Reader& reader, Block block, Source source) { reader.stack.push_back({reader.state, block, source}); }
+
+// Ends the innermost block if it is of this kind.
+bool pop(Reader& reader, Block block, std::string_view directive, std::string_view begin, Source source) {
+  if (reader.stack.empty() || reader.stack.back().block != block) {
+    reader.messages.error(source, fmt::format("{} without {}", directive, begin));
+    return false;
+  }
+  reader.state = std::move(reader.stack.back().state);
+  reader.stack.pop_back();
+  return true;
+}
+
+void attribute_begin(Reader& reader, Tokenizer&, std::string_view, Source source) {
+  push(reader, Block::attribute, source);
+}
+void attribute_end(Reader& reader, Tokenizer&, std::string_view directive, Source source) {
+  pop(reader, Block::attribute, directive, "AttributeBegin", source);
+}
+
+// Deprecated in pbrt-v4, which takes them as AttributeBegin and AttributeEnd.
+void transform_begin(Reader& reader, Tokenizer&, std::string_view, Source source) {
+  reader.messages.warning_once("TransformBegin", source, "TransformBegin is deprecated; it means AttributeBegin");
+  push(reader, Block::transform, source);
+}
+void transform_end(Reader& reader, Tokenizer&, std::string_view directive, Source source) {
+  pop(reader, Block::transform, directive, "TransformBegin", source);
+}
+
+void object_begin(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  const auto name = read_string(reader, tokens, directive, source);
+  push(reader, Block::object, source);
+  if (!name) return;
+  if (reader.object) return reader.messages.error(source, "ObjectBegin inside ObjectBegin");
+  if (reader.objects.contains(*name)) reader.messages.error(source, fmt::format("object '{}' is defined twice", *name));
+  reader.objects.try_emplace(*name);
+  reader.object = *name;
+}
+
+void object_end(Reader& reader, Tokenizer&, std::string_view directive, Source source) {
+  if (!pop(reader, Block::object, directive, "ObjectBegin", source)) return;
+  const bool inside = std::any_of(reader.stack.begin(), reader.stack.end(),
+                                  [](const SavedState& s) { return s.block == Block::object; });
+  if (!inside) reader.object.reset();
+}
+
+void object_instance(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  const auto name = read_string(reader, tokens, directive, source);
+  if (!name) return;
+  if (reader.object) return reader.messages.error(source, "ObjectInstance inside ObjectBegin");
+  reader.instances.push_back({*name, reader.state.transform, source});
+}
+
+void reverse_orientation(Reader& reader, Tokenizer&, std::string_view, Source) {
+  reader.state.reverse_orientation = !reader.state.reverse_orientation;
+}
+
+void world_begin(Reader& reader, Tokenizer&, std::string_view, Source source) {
+  default_camera(reader, source);
+  reader.in_world = true;
+  reader.state.transform = glm::dmat4(1.0);
+  reader.state.start_time_active = true;
+  reader.coordinate_systems["world"] = reader.state.transform;
+}
+
+void world_end(Reader& reader, Tokenizer&, std::string_view, Source source) {
+  reader.messages.warning_once("WorldEnd", source, "WorldEnd is of pbrt-v3 and means nothing any more");
+}
+
+void include(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  const auto name = read_string(reader, tokens, directive, source);
+  if (name) read_scene_file(reader, reader.resolve(*name), source);
+}
+
+// As Include, but what the file does to the graphics state ends with it.
+void import(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  const auto name = read_string(reader, tokens, directive, source);
+  if (!name) return;
+  const size_t depth = reader.stack.size();
+  push(reader, Block::import, source);
+  read_scene_file(reader, reader.resolve(*name), source);
+  while (reader.stack.size() > depth + 1) {
+    reader.messages.error(reader.stack.back().source, "this block is not closed at the end of the imported file");
+    if (reader.stack.back().block == Block::object) reader.object.reset();
+    reader.stack.pop_back();
+  }
+  pop(reader, Block::import, directive, "Import", source);
+}
+
+constexpr auto directives = std::to_array<Directive>({
+    {"Accelerator", Where::before_world, plain<accelerator>},
+    {"AreaLightSource", Where::in_world, with_attributes<area_light_source, AttributeTarget::light>},
+    {"Attribute", Where::anywhere, attribute},
+    {"AttributeBegin", Where::in_world, attribute_begin},
+    {"AttributeEnd", Where::in_world, attribute_end},
+    {"Camera", Where::before_world, plain<read_camera>},
+    {"ColorSpace", Where::anywhere, color_space},
+    {"Film", Where::before_world, plain<read_film>},
+    {"Import", Where::in_world, import},
+    {"Include", Where::anywhere, include},
+    {"Integrator", Where::before_world, plain<read_integrator>},
+    {"LightSource", Where::in_world, with_attributes<read_light, AttributeTarget::light>},
+    {"MakeNamedMaterial", Where::in_world, with_attributes<make_named_material, AttributeTarget::material>},
+    {"MakeNamedMedium", Where::anywhere, plain<make_named_medium>},
+    {"Material", Where::in_world, with_attributes<material, AttributeTarget::material>},
+    {"MediumInterface", Where::anywhere, medium_interface},
+    {"NamedMaterial", Where::in_world, use_named_material},
+    {"ObjectBegin", Where::in_world, object_begin},
+    {"ObjectEnd", Where::in_world, object_end},
+    {"ObjectInstance", Where::in_world, object_instance},
+    {"Option", Where::before_world, option},
+    {"PixelFilter", Where::before_world, plain<read_filter>},
+    {"ReverseOrientation", Where::in_world, reverse_orientation},
+    {"Sampler", Where::before_world, plain<read_sampler>},
+    {"Shape", Where::in_world, with_attributes<read_shape, AttributeTarget::shape>},
+    {"Texture", Where::in_world, texture},
+    {"TransformBegin", Where::in_world, transform_begin},
+    {"TransformEnd", Where::in_world, transform_end},
+    {"WorldBegin", Where::before_world, world_begin},
+    {"WorldEnd", Where::in_world, world_end},
+});
+constexpr std::string_view transform_directives[] = {
+    "ActiveTransform", "ConcatTransform", "CoordSysTransform", "CoordinateSystem", "Identity", "LookAt",
+    "Rotate",          "Scale",           "Transform",         "TransformTimes",   "Translate"};
+
+void unknown_directive(Reader& reader, Tokenizer& tokens, const Token& token, Source source) {
+  std::vector<std::string_view> known(std::begin(transform_directives), std::end(transform_directives));
+  for (const Directive& directive : directives) known.push_back(directive.name);
+  reader.messages.error(source,
+                        fmt::format("expected a directive, not {}{}", show(token), did_you_mean(token.text, known)));
+  tokens.skip_to_directive();
+}
+
+void read_directive(Reader& reader, Tokenizer& tokens) {
+  const Token token = tokens.next();
+  const Source source{reader.file, token.line};
+  const bool is_word = token.kind == TokenKind::word;
+  if (is_word && read_transform_directive(reader, tokens, token.text, source)) return;
+  const auto found =
+      std::find_if(directives.begin(), directives.end(), [&](const Directive& d) { return d.name == token.text; });
+  if (!is_word || found == directives.end()) return unknown_directive(reader, tokens, token, source);
+  if (found->where != Where::anywhere && (found->where == Where::in_world) != reader.in_world) {
+    reader.messages.error(source,
+                          fmt::format("{} must stand {} WorldBegin", token.text, reader.in_world ? "before" : "after"));
+  }
+  found->read(reader, tokens, token.text, source);
+}
+
+}  // namespace
+
+void read_directives(Reader& reader, Tokenizer& tokens) {
+  const Diagnostics& diagnostics = reader.messages.diagnostics;
+  while (tokens.peek().kind != TokenKind::end) {
+    if (diagnostics.all().size() > most_mistakes) return;
+    read_directive(reader, tokens);
+  }
+}
+
+}  // namespace metamer::pbrt

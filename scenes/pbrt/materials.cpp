@@ -1,0 +1,131 @@
+// Materials, and the entities that carry them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/pbrt/reader.h"
+
+namespace metamer::pbrt {
+namespace {
+
+constexpr double smooth_alpha = 1e-3;  // below, pbrt and we take a surface as perfectly smooth
+
+constexpr std::string_view material_kinds[] = {
+    "diffuse", "conductor", "dielectric", "coateddiffuse", "coatedconductor", "diffusetransmission",
+    "hair",    "interface", "measured",   "mix",           "subsurface",      "thindielectric"};
+
+// GGX widths along u and v. pbrt's remapping of roughness to alpha is a square root.
+void read_roughness(Reader& reader, Parameters& parameters, Material& material) {
+  const double both = read_real_or_texture(reader, parameters, "roughness", 0);
+  const bool remap = parameters.boolean("remaproughness", true);
+  const auto alpha = [&](std::string_view name) {
+    const double roughness = read_real_or_texture(reader, parameters, name, both);
+    if (roughness < 0) parameters.error(parameters.has(name) ? name : "roughness", "roughness must not be negative");
+    return static_cast<float>(remap ? std::sqrt(std::max(roughness, 0.0)) : std::max(roughness, 0.0));
+  };
+  material.alpha_x = alpha("uroughness");
+  material.alpha_y = alpha("vroughness");
+}
+
+SpectrumId spectrum_or(const std::optional<SpectrumValue>& value, SpectrumId fallback) {
+  return value ? value->id : fallback;
+}
+
+void read_diffuse(Reader& reader, Parameters& parameters, Material& material) {
+  material.kind = MaterialKind::diffuse;
+  const auto reflectance = read_spectrum(reader, parameters, "reflectance", RgbKind::albedo, SpectrumAlso::texture);
+  material.reflectance = spectrum_or(reflectance, reader.scene.spectra.add_constant(0.5).id);
+}
+
+// pbrt's inversion: eta = 1 and k = 2 sqrt(R) / sqrt(1 - R), whose reflectance at normal incidence is R.
+SpectrumId kappa_of_reflectance(SpectrumSet& spectra, SpectrumId reflectance) {
+  Samples samples = spectra.samples(reflectance);
+  for (double& sample : samples) {
+    const double r = std::clamp(sample, 0.0, 0.9999);
+    sample = 2 * std::sqrt(r) / std::sqrt(1 - r);
+  }
+  return spectra.add_samples(samples).id;
+}
+
+void read_conductor(Reader& reader, Parameters& parameters, Material& material) {
+  SpectrumSet& spectra = reader.scene.spectra;
+  material.kind = MaterialKind::conductor;
+  const auto eta = read_spectrum(reader, parameters, "eta", RgbKind::unbounded, SpectrumAlso::texture);
+  const auto kappa = read_spectrum(reader, parameters, "k", RgbKind::unbounded, SpectrumAlso::texture);
+  const auto reflectance = read_spectrum(reader, parameters, "reflectance", RgbKind::albedo, SpectrumAlso::texture);
+  if (reflectance && (eta || kappa)) {
+    parameters.error("reflectance", "'reflectance' and 'eta' or 'k' exclude each other");
+  }
+  if (reflectance) {
+    material.eta = unit_spectrum;
+    material.kappa = kappa_of_reflectance(spectra, reflectance->id);
+  } else {
+    material.eta = spectrum_or(eta, spectra.add_named("metal-Cu-eta").value_or(unit_spectrum));
+    material.kappa = spectrum_or(kappa, spectra.add_named("metal-Cu-k").value_or(zero_spectrum));
+  }
+  read_roughness(reader, parameters, material);
+}
+
+void read_dielectric(Reader& reader, Parameters& parameters, Material& material) {
+  SpectrumSet& spectra = reader.scene.spectra;
+  material.kind = MaterialKind::dielectric;
+  const auto eta = read_spectrum(reader, parameters, "eta", RgbKind::unbounded, SpectrumAlso::texture_or_real);
+  material.eta = spectrum_or(eta, spectra.add_constant(1.5).id);
+  if (spectra.min_value(material.eta) <= 0) {
+    parameters.error("eta", "an index of refraction must be positive");
+    material.eta = spectra.add_constant(1.5).id;
+  }
+  read_roughness(reader, parameters, material);
+  if (std::max(material.alpha_x, material.alpha_y) >= smooth_alpha) {
+    reader.messages.warning_once(
+        "rough dielectric", parameters.source(),
+        fmt::format("{}: rough dielectrics are not supported yet; this one is smooth", parameters.what()));
+  }
+  material.alpha_x = material.alpha_y = 0;
+}
+
+void read_unsupported(Reader& reader, std::string_view kind, Parameters& parameters, Material& material) {
+  const bool known = std::find(std::begin(material_kinds), std::end(material_kinds), kind) != std::end(material_kinds);
+  if (kind == "coateddiffuse") {
+    read_diffuse(reader, parameters, material);
+  } else {
+    material.reflectance = reader.scene.spectra.add_constant(0.5).id;
+  }
+  parameters.ignore_the_rest();
+  if (!known) {
+    reader.messages.error(parameters.source(),
+                          fmt::format("there is no material \"{}\"{}", kind, did_you_mean(kind, material_kinds)));
+    return;
+  }
+  const std::string instead = kind == "coateddiffuse" ? "diffuse with its reflectance" : "diffuse with reflectance 0.5";
+  reader.messages.warning_once(
+      "material " + std::string(kind), parameters.source(),
+      fmt::format("material \"{}\" is not supported yet; it is rendered as {}", kind, instead));
+}
+
+}  // namespace
+
+Entity read_material(Reader& reader, std::string_view kind, Parameters& parameters, Entity entity) {
+  Material material;
+  if (kind == "diffuse") {
+    read_diffuse(reader, parameters, material);
+  } else if (kind == "conductor") {
+    read_conductor(reader, parameters, material);
+  } else if (kind == "dielectric") {
+    read_dielectric(reader, parameters, material);
+  } else if (kind == "interface" || kind == "none" || kind.empty()) {
+    reader.interface_materials.push_back(entity);
+    reader.messages.warning_once("interface", parameters.source(),
+                                 "material \"interface\": media are not supported yet; shapes of it are left out");
+  } else {
+    read_unsupported(reader, kind, parameters, material);
+  }
+  parameters.unsupported("displacement", "the surface stays as it is");
+  parameters.unsupported("normalmap", "the surface stays as it is");
+  reader.scene.registry.set(entity, material);
+  reader.scene.registry.set(entity, parameters.source());
+  return entity;
+}
+
+}  // namespace metamer::pbrt

@@ -1,0 +1,182 @@
+#include "scenes/pbrt/mesh_shapes.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "scenes/meshes/read_mesh.h"
+
+namespace metamer::pbrt {
+namespace {
+
+constexpr uint32_t patch_steps = 16;  // a patch that is not flat becomes patch_steps^2 quadrilaterals
+
+std::string place_name(const Reader& reader, Source source) {
+  return fmt::format("{}:{}", reader.scene.names[source.file], source.line);
+}
+
+Column<glm::vec3> to_vec3(std::span<const double> numbers) {
+  Column<glm::vec3> column(numbers.size() / 3);
+  for (size_t i = 0; i < column.size(); ++i) {
+    for (int k = 0; k < 3; ++k) column[i][k] = static_cast<float>(numbers[3 * i + static_cast<size_t>(k)]);
+  }
+  return column;
+}
+
+Column<glm::vec2> to_vec2(std::span<const double> numbers) {
+  Column<glm::vec2> column(numbers.size() / 2);
+  for (size_t i = 0; i < column.size(); ++i) {
+    column[i] = {static_cast<float>(numbers[2 * i]), static_cast<float>(numbers[2 * i + 1])};
+  }
+  return column;
+}
+
+// Indices; without the parameter those of a single face. Negative ones become large: validate_mesh reports both.
+Column<uint32_t> read_indices(Parameters& parameters, size_t vertices, uint32_t per_face) {
+  Column<uint32_t> indices;
+  const bool given = parameters.has("indices");
+  for (const double index : parameters.array("indices", ParameterType::integer, 1)) {
+    indices.push_back(static_cast<uint32_t>(static_cast<int64_t>(index)));
+  }
+  if (!given && vertices == per_face) {
+    for (uint32_t i = 0; i < per_face; ++i) indices.push_back(i);
+  } else if (!given && vertices > 0) {
+    parameters.error("indices",
+                     fmt::format("'indices' is missing, and there are {} vertices instead of {}", vertices, per_face));
+  }
+  return indices;
+}
+
+// The vertices that triangle and bilinear meshes have in common.
+bool read_vertices(Parameters& parameters, Mesh& mesh, uint32_t per_face) {
+  const size_t errors = parameters.messages().diagnostics.error_count();
+  mesh.positions = to_vec3(parameters.array("P", ParameterType::point3, 3));
+  mesh.normals = to_vec3(parameters.array("N", ParameterType::normal, 3));
+  const std::string_view uv_name = parameters.has("st") ? "st" : "uv";
+  mesh.uvs = to_vec2(parameters.array(uv_name, ParameterType::point2, 2));
+  mesh.indices = read_indices(parameters, mesh.positions.size(), per_face);
+  parameters.array("faceIndices", ParameterType::integer, 1);  // only Ptex textures ask for them
+  if (!parameters.has("P")) parameters.error("P", "'P', the positions, is missing");
+  return parameters.messages().diagnostics.error_count() == errors;
+}
+
+std::optional<ReadMesh> add_mesh(Reader& reader, Parameters& parameters, Mesh&& mesh, size_t triangles_per_face) {
+  if (!validate_mesh(mesh, parameters.messages().at(parameters.source()), reader.messages.diagnostics))
+    return std::nullopt;
+  reader.scene.meshes.push_back(std::move(mesh));
+  return ReadMesh{static_cast<MeshId>(reader.scene.meshes.size() - 1), triangles_per_face};
+}
+
+// Whether the four corners lie in one plane and form a convex quadrilateral, which two triangles fill exactly.
+bool is_flat_and_convex(const Mesh& patches, const uint32_t* corner) {
+  // Around the edge: 00, 10, 11, 01.
+  const glm::dvec3 p[4] = {patches.positions[corner[0]], patches.positions[corner[1]], patches.positions[corner[3]],
+                           patches.positions[corner[2]]};
+  const glm::dvec3 normal = glm::cross(p[2] - p[0], p[3] - p[1]);
+  const double size = std::sqrt(glm::length(normal));
+  if (!(size > 0)) return true;
+  if (std::abs(glm::dot(glm::normalize(normal), p[1] - p[0] + p[3] - p[2])) > 1e-5 * size) return false;
+  for (int i = 0; i < 4; ++i) {
+    if (glm::dot(normal, glm::cross(p[(i + 1) % 4] - p[i], p[(i + 2) % 4] - p[(i + 1) % 4])) < 0) return false;
+  }
+  return true;
+}
+
+template <class T>
+T bilinear(const Column<T>& column, const uint32_t* corner, float u, float v) {
+  const T bottom = column[corner[0]] * (1 - u) + column[corner[1]] * u;
+  const T top = column[corner[2]] * (1 - u) + column[corner[3]] * u;
+  return bottom * (1 - v) + top * v;
+}
+
+// The normal of pbrt's patch is dp/du x dp/dv, hence the counter-clockwise order 00, 10, 11, 01.
+void add_patch(const Mesh& patches, const uint32_t* corner, uint32_t steps, Mesh& mesh) {
+  const auto first = static_cast<uint32_t>(mesh.positions.size());
+  for (uint32_t row = 0; row <= steps; ++row) {
+    for (uint32_t column = 0; column <= steps; ++column) {
+      const float u = static_cast<float>(column) / static_cast<float>(steps),
+                  v = static_cast<float>(row) / static_cast<float>(steps);
+      mesh.positions.push_back(bilinear(patches.positions, corner, u, v));
+      if (!patches.normals.empty()) mesh.normals.push_back(bilinear(patches.normals, corner, u, v));
+      mesh.uvs.push_back(patches.uvs.empty() ? glm::vec2(u, v) : bilinear(patches.uvs, corner, u, v));
+    }
+  }
+  for (uint32_t row = 0; row < steps; ++row) {
+    for (uint32_t column = 0; column < steps; ++column) {
+      const uint32_t a = first + row * (steps + 1) + column, b = a + 1, c = b + steps + 1, d = c - 1;
+      for (const uint32_t index : {a, b, c, a, c, d}) mesh.indices.push_back(index);
+    }
+  }
+}
+
+// validate_mesh for patches: it knows triangles only.
+bool validate_patches(Parameters& parameters, const Mesh& patches) {
+  const size_t vertices = patches.positions.size();
+  if (patches.indices.size() % 4 != 0) {
+    parameters.error("indices", fmt::format("{} indices are not a multiple of 4", patches.indices.size()));
+    return false;
+  }
+  for (const uint32_t index : patches.indices) {
+    if (index < vertices) continue;
+    parameters.error("indices", fmt::format("index {} is out of range: there are {} vertices",
+                                            static_cast<int32_t>(index), vertices));
+    return false;
+  }
+  if ((!patches.normals.empty() && patches.normals.size() != vertices) ||
+      (!patches.uvs.empty() && patches.uvs.size() != vertices)) {
+    parameters.error("P", "there must be one normal and one uv per vertex, or none");
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<ReadMesh> read_triangle_mesh(Reader& reader, Parameters& parameters) {
+  Mesh mesh;
+  mesh.name = place_name(reader, parameters.source());
+  parameters.array("S", ParameterType::vector3, 3);  // tangents: only anisotropic and hair-like materials would notice
+  if (!read_vertices(parameters, mesh, 3)) return std::nullopt;
+  return add_mesh(reader, parameters, std::move(mesh), 1);
+}
+
+std::optional<ReadMesh> read_bilinear_mesh(Reader& reader, Parameters& parameters) {
+  Mesh patches, mesh;
+  mesh.name = place_name(reader, parameters.source());
+  parameters.unsupported("emissionfilename", "the light emits evenly");
+  if (!read_vertices(parameters, patches, 4) || !validate_patches(parameters, patches)) return std::nullopt;
+  bool all_flat = true;
+  for (size_t i = 0; i < patches.indices.size(); i += 4)
+    all_flat = all_flat && is_flat_and_convex(patches, &patches.indices[i]);
+  if (!all_flat) {
+    reader.messages.note_once(
+        "curved patch", parameters.source(),
+        fmt::format("Shape \"bilinearmesh\": curved patches are rendered as {0} x {0} flat pieces", patch_steps));
+  }
+  const uint32_t steps = all_flat ? 1 : patch_steps;
+  for (size_t i = 0; i < patches.indices.size(); i += 4) add_patch(patches, &patches.indices[i], steps, mesh);
+  return add_mesh(reader, parameters, std::move(mesh), size_t{2} * steps * steps);
+}
+
+std::optional<ReadMesh> read_ply_mesh(Reader& reader, Parameters& parameters) {
+  const std::string name = parameters.string("filename", "");
+  parameters.unsupported("displacement", "the surface stays as it is");
+  parameters.number("edgelength", 1);
+  if (name.empty()) {
+    parameters.error("filename", "'filename' is missing");
+    return std::nullopt;
+  }
+  const std::string path = reader.resolve(name);
+  const auto known = reader.files_of_meshes.find(path);
+  if (known != reader.files_of_meshes.end()) return ReadMesh{known->second, 1};
+  Mesh mesh;
+  mesh.name = name;
+  if (!read_ply(path, parameters.messages().at(parameters.source()), mesh, reader.messages.diagnostics))
+    return std::nullopt;
+  const auto added = add_mesh(reader, parameters, std::move(mesh), 1);
+  if (added) reader.files_of_meshes.emplace(path, added->id);
+  return added;
+}
+
+}  // namespace metamer::pbrt

@@ -1,0 +1,19 @@
+// Shapes that are meshes.
+#pragma once
+#include <optional>
+
+#include "scenes/pbrt/reader.h"
+
+namespace metamer::pbrt {
+
+struct ReadMesh {
+  MeshId id = no_index;
+  size_t triangles_per_face = 1;  // of what pbrt takes as one shape: a triangle, or a bilinear patch
+};
+
+// Nothing after reporting why.
+std::optional<ReadMesh> read_triangle_mesh(Reader& reader, Parameters& parameters);
+std::optional<ReadMesh> read_bilinear_mesh(Reader& reader, Parameters& parameters);
+std::optional<ReadMesh> read_ply_mesh(Reader& reader, Parameters& parameters);
+
+}  // namespace metamer::pbrt

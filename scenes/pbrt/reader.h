@@ -1,0 +1,139 @@
+// The state of reading a pbrt file, and the directives' parts. Free functions over one struct: each file here adds to
+// the scene what it knows about.
+#pragma once
+#include <filesystem>
+#include <glm/mat4x4.hpp>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/ecs/scene.h"
+#include "scenes/pbrt/parameters.h"
+
+namespace metamer::pbrt {
+
+// What AreaLightSource said, for the shapes that follow.
+struct AreaLight {
+  bool on = false;
+  SpectrumId spectrum = 0;
+  double scale = 1;   // includes the division by the spectrum's luminance
+  double power = -1;  // per shape, in pbrt's sense; negative: not given
+  bool two_sided = false;
+};
+
+// Parameters set by Attribute, in the order of attribute_targets.
+inline constexpr std::string_view attribute_targets[] = {"shape", "light", "material", "medium", "texture"};
+enum class AttributeTarget : uint8_t { shape, light, material, medium, texture };
+
+struct GraphicsState {
+  glm::dmat4 transform{1.0};  // object to world; before WorldBegin world to camera
+  bool start_time_active = true;
+  bool reverse_orientation = false;
+  ColorSpace color_space = ColorSpace::srgb;
+  Entity material;
+  AreaLight area_light;
+  ParameterList attributes[std::size(attribute_targets)];
+};
+
+enum class Block : uint8_t { attribute, transform, object, import };
+
+struct SavedState {
+  GraphicsState state;
+  Block block;
+  Source source;
+};
+
+struct NamedMaterial {
+  Entity entity;
+  Source first_use;
+  bool defined = false;
+};
+
+// A shape as it was said, not yet an entity: ObjectInstance makes several of one.
+struct ShapeRecord {
+  Geometry geometry;
+  glm::dmat4 transform;
+  Entity material;
+  Source source;
+};
+
+struct Instance {
+  std::string object;
+  glm::dmat4 transform;
+  Source source;
+};
+
+struct Reader {
+  Scene& scene;
+  Messages messages;
+  std::filesystem::path folder;  // of the first file: names in all files are relative to it
+  NameId file = no_index;        // being read
+
+  GraphicsState state = {};
+  std::vector<SavedState> stack = {};
+  bool in_world = false;
+  std::map<std::string, glm::dmat4> coordinate_systems = {};
+  std::map<std::string, NamedMaterial> materials = {};
+  std::vector<Entity> interface_materials = {};
+  std::set<std::string> textures = {}, media = {};
+  std::map<std::string, std::vector<ShapeRecord>> objects = {};
+  std::optional<std::string> object = {};  // between ObjectBegin and ObjectEnd
+  std::vector<Instance> instances = {};
+  std::map<std::string, MeshId> files_of_meshes = {};
+  Entity camera = {};
+  double exposure_seconds = 1, iso = 100;
+
+  std::vector<std::filesystem::path> open_files = {};
+  size_t files_read = 0;
+
+  const ParameterList& attributes(AttributeTarget target) const {
+    return state.attributes[static_cast<size_t>(target)];
+  }
+  std::string resolve(const std::string& name) const;
+};
+
+// Everything that a file says, until its end (directives.cpp).
+void read_directives(Reader& reader, Tokenizer& tokens);
+// The first file, Include and Import (read_pbrt.cpp).
+void read_scene_file(Reader& reader, const std::string& path, Source named_at);
+
+// transforms.cpp. False: `directive` is not one of these.
+bool read_transform_directive(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source);
+
+// settings.cpp. `kind` is the string after the directive.
+void read_camera(Reader& reader, std::string_view kind, Parameters& parameters);
+void read_film(Reader& reader, std::string_view kind, Parameters& parameters);
+void read_filter(Reader& reader, std::string_view kind, Parameters& parameters);
+void read_sampler(Reader& reader, std::string_view kind, Parameters& parameters);
+void read_integrator(Reader& reader, std::string_view kind, Parameters& parameters);
+void default_camera(Reader& reader, Source source);
+
+// spectra.cpp. A spectrum parameter; nothing if it is absent or wrong.
+struct SpectrumValue {
+  SpectrumId id = zero_spectrum;
+  std::optional<ColorSpace> rgb;  // the space of an rgb value
+};
+// Materials also take textures (reported, nothing returned) and some a plain "float".
+enum class SpectrumAlso : uint8_t { nothing, texture, texture_or_real };
+std::optional<SpectrumValue> read_spectrum(Reader& reader, Parameters& parameters, std::string_view name, RgbKind kind,
+                                           SpectrumAlso also);
+// A "float" parameter that may be a texture (reported, the fallback returned).
+double read_real_or_texture(Reader& reader, Parameters& parameters, std::string_view name, double fallback);
+
+// materials.cpp
+Entity read_material(Reader& reader, std::string_view kind, Parameters& parameters, Entity entity);
+
+// lights.cpp
+void read_light(Reader& reader, std::string_view kind, Parameters& parameters);
+AreaLight read_area_light(Reader& reader, std::string_view kind, Parameters& parameters);
+
+// shapes.cpp
+void read_shape(Reader& reader, std::string_view kind, Parameters& parameters);
+// objects.cpp
+void place_instances(Reader& reader);
+void drop_interfaces(Reader& reader);
+
+}  // namespace metamer::pbrt

@@ -1,0 +1,139 @@
+// The directives that change the current transformation matrix.
+#include <fmt/format.h>
+
+#include <array>
+#include <glm/matrix.hpp>
+
+#include "scenes/pbrt/matrix.h"
+#include "scenes/pbrt/reader.h"
+
+namespace metamer::pbrt {
+namespace {
+
+// `count` numbers, with or without brackets; else an error.
+std::optional<std::vector<double>> read_numbers(Reader& reader, Tokenizer& tokens, std::string_view directive,
+                                                Source source, size_t count) {
+  const bool bracket = tokens.peek().kind == TokenKind::open_bracket;
+  if (bracket) tokens.next();
+  std::vector<double> numbers;
+  while (tokens.peek().kind == TokenKind::word && !looks_like_directive(tokens.peek()) && numbers.size() < count) {
+    const Token token = tokens.next();
+    const std::optional<double> number = parse_number(token.text);
+    if (!number) {
+      reader.messages.error({source.file, token.line},
+                            fmt::format("{} expects numbers, not {}", directive, show(token)));
+      return std::nullopt;
+    }
+    numbers.push_back(*number);
+  }
+  if (numbers.size() == count && (!bracket || tokens.peek().kind == TokenKind::close_bracket)) {
+    if (bracket) tokens.next();
+    return numbers;
+  }
+  const Token& token = tokens.peek();
+  reader.messages.error({source.file, token.line},
+                        fmt::format("{} expects {} numbers{}, but after {} comes {}", directive, count,
+                                    bracket ? " and ']'" : "", numbers.size(), show(token)));
+  return std::nullopt;
+}
+
+std::optional<std::string> read_name(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  if (tokens.peek().kind == TokenKind::string) return std::string(tokens.next().text);
+  reader.messages.error(source, fmt::format("{} expects a quoted name, not {}", directive, show(tokens.peek())));
+  return std::nullopt;
+}
+
+void set_transform(Reader& reader, Source source, const std::optional<glm::dmat4>& m, std::string_view undefined) {
+  const std::string_view mistake = m ? transform_mistake(*m) : undefined;
+  if (!mistake.empty()) return reader.messages.error(source, fmt::format("this transformation is {}", mistake));
+  // ActiveTransform EndTime: only what applies when the shutter opens counts as long as nothing moves.
+  if (reader.state.start_time_active) reader.state.transform = *m;
+}
+
+void concatenate(Reader& reader, Source source, const std::optional<glm::dmat4>& m, std::string_view undefined = "") {
+  std::optional<glm::dmat4> product;
+  if (m) product = reader.state.transform * *m;
+  set_transform(reader, source, product, undefined);
+}
+
+void coordinate_system_transform(Reader& reader, const std::string& name, Source source) {
+  const auto found = reader.coordinate_systems.find(name);
+  if (found != reader.coordinate_systems.end()) return set_transform(reader, source, found->second, "");
+  std::vector<std::string_view> known;
+  for (const auto& [key, matrix] : reader.coordinate_systems) known.push_back(key);
+  reader.messages.error(source, fmt::format("there is no coordinate system '{}'{}", name, did_you_mean(name, known)));
+}
+
+void active_transform(Reader& reader, Tokenizer& tokens, Source source) {
+  const Token token = tokens.next();
+  if (token.text != "All" && token.text != "StartTime" && token.text != "EndTime") {
+    return reader.messages.error(source,
+                                 fmt::format("ActiveTransform expects All, StartTime or EndTime, not {}", show(token)));
+  }
+  reader.state.start_time_active = token.text != "EndTime";
+  reader.messages.warning_once("motion", source,
+                               "motion blur is not supported yet; everything stands as when the shutter opens");
+}
+
+void apply_numbers(Reader& reader, std::string_view directive, Source source, std::span<const double> v) {
+  if (directive == "LookAt") {
+    concatenate(reader, source, look_at({v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}),
+                "undefined: eye and target coincide, or the up vector points along the view");
+  } else if (directive == "Translate") {
+    concatenate(reader, source, translation({v[0], v[1], v[2]}));
+  } else if (directive == "Scale") {
+    concatenate(reader, source, scaling({v[0], v[1], v[2]}));
+  } else if (directive == "Rotate") {
+    concatenate(reader, source, rotation(v[0], {v[1], v[2], v[3]}), "undefined: its axis is zero");
+  } else if (directive == "ConcatTransform") {
+    concatenate(reader, source, from_columns(v));
+  } else if (directive == "Transform") {
+    set_transform(reader, source, from_columns(v), "");
+  } else {
+    reader.messages.warning_once("motion", source,
+                                 "motion blur is not supported yet; everything stands as when the shutter opens");
+  }
+}
+
+struct NumberDirective {
+  std::string_view name;
+  size_t count;
+};
+constexpr std::array<NumberDirective, 7> number_directives = {{{"LookAt", 9},
+                                                               {"Translate", 3},
+                                                               {"Scale", 3},
+                                                               {"Rotate", 4},
+                                                               {"ConcatTransform", 16},
+                                                               {"Transform", 16},
+                                                               {"TransformTimes", 2}}};
+
+}  // namespace
+
+bool read_transform_directive(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  for (const NumberDirective& known : number_directives) {
+    if (directive != known.name) continue;
+    const auto numbers = read_numbers(reader, tokens, directive, source, known.count);
+    if (numbers) {
+      apply_numbers(reader, directive, source, *numbers);
+    } else {
+      tokens.skip_to_directive();
+    }
+    return true;
+  }
+  if (directive == "Identity") {
+    set_transform(reader, source, glm::dmat4(1.0), "");
+  } else if (directive == "ActiveTransform") {
+    active_transform(reader, tokens, source);
+  } else if (directive == "CoordinateSystem") {
+    if (const auto name = read_name(reader, tokens, directive, source))
+      reader.coordinate_systems[*name] = reader.state.transform;
+  } else if (directive == "CoordSysTransform") {
+    if (const auto name = read_name(reader, tokens, directive, source))
+      coordinate_system_transform(reader, *name, source);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace metamer::pbrt
