@@ -19,9 +19,7 @@ HWY_INLINE VU hash_u32(VU x) {
   return hn::Xor(x, hn::ShiftRight<15>(x));
 }
 
-HWY_INLINE VU hash_combine(VU a, VU b) {
-  return hash_u32(hn::Xor(hash_u32(hn::Add(a, splat_u(0x9e3779b9u))), b));
-}
+HWY_INLINE VU hash_combine(VU a, VU b) { return hash_u32(hn::Xor(hash_u32(hn::Add(a, splat_u(0x9e3779b9u))), b)); }
 
 // The top 24 bits as a number in [0, 1); never 1.
 HWY_INLINE VF unit_float(VU x) {

@@ -15,13 +15,9 @@ constexpr uint32_t hash_u32(uint32_t x) {
 }
 
 // Hash of an ordered pair; for either argument fixed a bijection of the other.
-constexpr uint32_t hash_combine(uint32_t a, uint32_t b) {
-  return hash_u32(hash_u32(a + 0x9e3779b9u) ^ b);
-}
+constexpr uint32_t hash_combine(uint32_t a, uint32_t b) { return hash_u32(hash_u32(a + 0x9e3779b9u) ^ b); }
 
 // The top 24 bits as a number in [0, 1); never 1.
-constexpr float unit_float(uint32_t x) {
-  return static_cast<float>(x >> 8) * 0x1p-24f;
-}
+constexpr float unit_float(uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
 
 }  // namespace metamer
