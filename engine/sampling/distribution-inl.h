@@ -26,21 +26,29 @@ struct SquareSampleV {
 
 namespace distribution_detail {
 
-// The cdf of a lane starts at cdf[offset]. All lanes take the same number of steps.
-HWY_INLINE DiscreteSampleV sample_cdf(const float* cdf, VI offset, uint32_t bins, VF u) {
+// The cdf of a lane starts at cdf[cdf_offset], its guide at guide[guide_offset]. Lanes that are done wait for the
+// others without changing, so their result does not depend on them.
+HWY_INLINE DiscreteSampleV sample_cdf(const float* cdf, VI cdf_offset, const int32_t* guide, VI guide_offset,
+                                      uint32_t bins, VF u) {
   const FloatTag d;
-  VI low = offset;
-  for (uint32_t length = bins; length > 1;) {
-    const uint32_t half = length / 2;
-    const VI middle = hn::Add(low, hn::Set(IntTag(), static_cast<int32_t>(half)));
-    const MF up = hn::Le(hn::GatherIndex(d, cdf, middle), u);
-    low = hn::IfThenElse(hn::RebindMask(IntTag(), up), middle, low);
-    length -= half;
+  const IntTag di;
+  const VI one = hn::Set(di, 1);
+  u = hn::Max(hn::Min(u, splat(metamer::distribution_detail::largest_below_one)), hn::Zero(d));
+  const VI cell = hn::ConvertTo(di, hn::Mul(u, splat(static_cast<float>(guide_cells(bins)))));
+  const VI guide_index = hn::Add(guide_offset, cell);
+  VI low = hn::Add(cdf_offset, hn::GatherIndex(di, guide, guide_index));
+  VI high = hn::Add(cdf_offset, hn::GatherIndex(di, guide + 1, guide_index));
+  while (!hn::AllTrue(di, hn::Eq(low, high))) {
+    const VI middle = hn::Add(low, hn::ShiftRight<1>(hn::Add(hn::Sub(high, low), one)));
+    const auto up = hn::RebindMask(di, hn::Le(hn::GatherIndex(d, cdf, middle), u));
+    high = hn::IfThenElse(up, high, hn::Max(low, hn::Sub(middle, one)));
+    low = hn::IfThenElse(up, middle, low);
   }
   const VF start = hn::GatherIndex(d, cdf, low);
   const VF probability = hn::Sub(hn::GatherIndex(d, cdf + 1, low), start);
   const VF remapped = hn::Div(hn::Sub(u, start), probability);
-  return {hn::Sub(low, offset), probability, hn::Min(remapped, splat(metamer::distribution_detail::largest_below_one))};
+  return {hn::Sub(low, cdf_offset), probability,
+          hn::Min(remapped, splat(metamer::distribution_detail::largest_below_one))};
 }
 
 HWY_INLINE VF coordinate(VI bin, VF offset, uint32_t bins) {
@@ -59,7 +67,9 @@ HWY_INLINE VI bin_of(VF x, uint32_t bins) {
 }  // namespace distribution_detail
 
 HWY_INLINE DiscreteSampleV sample_discrete(const Distribution1D& distribution, VF u) {
-  return distribution_detail::sample_cdf(distribution.cdf.data(), hn::Zero(IntTag()), distribution.size(), u);
+  const VI zero = hn::Zero(IntTag());
+  return distribution_detail::sample_cdf(distribution.cdf.data(), zero, distribution.guide.data(), zero,
+                                         distribution.size(), u);
 }
 
 HWY_INLINE VF discrete_probability(const Distribution1D& distribution, VI index) {
@@ -70,11 +80,14 @@ HWY_INLINE VF discrete_probability(const Distribution1D& distribution, VI index)
 
 HWY_INLINE SquareSampleV sample_square(const Distribution2D& distribution, VF u, VF v) {
   const uint32_t width = distribution.width, height = distribution.height;
-  const DiscreteSampleV row =
-      distribution_detail::sample_cdf(distribution.marginal.data(), hn::Zero(IntTag()), height, v);
+  const VI zero = hn::Zero(IntTag());
+  const DiscreteSampleV row = distribution_detail::sample_cdf(distribution.marginal.data(), zero,
+                                                              distribution.marginal_guide.data(), zero, height, v);
   const VI stride = hn::Set(IntTag(), static_cast<int32_t>(width + 1));
-  const DiscreteSampleV column =
-      distribution_detail::sample_cdf(distribution.conditional.data(), hn::Mul(row.index, stride), width, u);
+  const VI guide_stride = hn::Set(IntTag(), static_cast<int32_t>(guide_cells(width) + 1));
+  const DiscreteSampleV column = distribution_detail::sample_cdf(
+      distribution.conditional.data(), hn::Mul(row.index, stride), distribution.conditional_guide.data(),
+      hn::Mul(row.index, guide_stride), width, u);
   const VF cells = splat(static_cast<float>(width) * static_cast<float>(height));
   return {distribution_detail::coordinate(column.index, column.remapped, width),
           distribution_detail::coordinate(row.index, row.remapped, height),

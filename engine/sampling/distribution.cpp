@@ -7,6 +7,10 @@
 namespace metamer {
 namespace {
 
+using distribution_detail::just_above_one;
+using distribution_detail::just_below_one;
+using distribution_detail::largest_below_one;
+
 constexpr double grid = 0x1p24;
 
 // Capped where sums of them could overflow.
@@ -43,29 +47,43 @@ double write_cdf(std::span<const double> weights, float* cdf) {
   return largest > 0 ? scaled_sum * largest : 0;
 }
 
-// The last bin that starts at or below u: bins of no width are passed over.
-uint32_t find_bin(const float* cdf, uint32_t bins, float u) {
-  uint32_t low = 0;
-  for (uint32_t length = bins; length > 1;) {
-    const uint32_t half = length / 2;
-    if (cdf[low + half] <= u) low += half;
-    length -= half;
+// The last bin in [low, high] that starts at or below u: bins of no width are passed over.
+uint32_t find_bin(const float* cdf, uint32_t low, uint32_t high, float u) {
+  while (low < high) {
+    const uint32_t middle = (low + high + 1) / 2;
+    if (cdf[middle] <= u) {
+      low = middle;
+    } else {
+      high = middle - 1;
+    }
   }
   return low;
 }
 
-DiscreteSample sample_cdf(const float* cdf, uint32_t bins, float u) {
-  const uint32_t bin = find_bin(cdf, bins, u);
+// Writes guide_cells(bins) + 1 values: the bins of the cells' first numbers, and that of the last number of all.
+void write_guide(const float* cdf, uint32_t bins, int32_t* guide) {
+  const uint32_t cells = guide_cells(bins);
+  uint32_t bin = 0;
+  for (uint32_t k = 0; k <= cells; ++k) {
+    const float u = std::min(static_cast<float>(k) / static_cast<float>(cells), largest_below_one);
+    while (bin + 1 < bins && cdf[bin + 1] <= u) ++bin;
+    guide[k] = static_cast<int32_t>(bin);
+  }
+}
+
+DiscreteSample sample_cdf(const float* cdf, const int32_t* guide, uint32_t bins, float u) {
+  u = std::max(0.0f, std::min(largest_below_one, u));
+  const auto cell = static_cast<uint32_t>(u * static_cast<float>(guide_cells(bins)));
+  const uint32_t bin = find_bin(cdf, static_cast<uint32_t>(guide[cell]), static_cast<uint32_t>(guide[cell + 1]), u);
   const float start = cdf[bin], probability = cdf[bin + 1] - start;
-  return {bin, probability, std::min((u - start) / probability, distribution_detail::largest_below_one)};
+  return {bin, probability, std::min((u - start) / probability, largest_below_one)};
 }
 
 // (bin + offset) / bins, so far inside the bin that rounding in bin_of does not lead to a neighbour, whose density
 // may be of another order.
 float coordinate(uint32_t bin, float offset, uint32_t bins) {
   const float start = static_cast<float>(bin);
-  const float inside = std::max(std::min(start + offset, (start + 1) * distribution_detail::just_below_one),
-                                start * distribution_detail::just_above_one);
+  const float inside = std::max(std::min(start + offset, (start + 1) * just_below_one), start * just_above_one);
   return inside / static_cast<float>(bins);
 }
 
@@ -80,11 +98,13 @@ Distribution1D make_distribution_1d(std::span<const double> weights) {
   Distribution1D distribution;
   distribution.cdf.resize(weights.size() + 1);
   distribution.sum = write_cdf(weights, distribution.cdf.data());
+  distribution.guide.resize(size_t{guide_cells(distribution.size())} + 1);
+  write_guide(distribution.cdf.data(), distribution.size(), distribution.guide.data());
   return distribution;
 }
 
 DiscreteSample sample_discrete(const Distribution1D& distribution, float u) {
-  return sample_cdf(distribution.cdf.data(), distribution.size(), u);
+  return sample_cdf(distribution.cdf.data(), distribution.guide.data(), distribution.size(), u);
 }
 
 float discrete_probability(const Distribution1D& distribution, uint32_t index) {
@@ -97,24 +117,30 @@ Distribution2D make_distribution_2d(std::span<const double> weights, uint32_t wi
   distribution.height = height;
   distribution.marginal.resize(size_t{height} + 1);
   distribution.conditional.resize(size_t{height} * (size_t{width} + 1));
+  distribution.marginal_guide.resize(size_t{guide_cells(height)} + 1);
+  const size_t guide_stride = size_t{guide_cells(width)} + 1;
+  distribution.conditional_guide.resize(height * guide_stride);
   std::vector<double> rows(height);
   for (uint32_t y = 0; y < height; ++y) {
     const std::span<const double> row = weights.subspan(size_t{y} * width, width);
     float* cdf = distribution.conditional.data() + size_t{y} * (size_t{width} + 1);
     rows[y] = write_cdf(row, cdf);
+    write_guide(cdf, width, distribution.conditional_guide.data() + y * guide_stride);
   }
   distribution.mean = write_cdf(rows, distribution.marginal.data()) / width / height;
+  write_guide(distribution.marginal.data(), height, distribution.marginal_guide.data());
   return distribution;
 }
 
 SquareSample sample_square(const Distribution2D& distribution, float u, float v) {
-  const DiscreteSample row = sample_cdf(distribution.marginal.data(), distribution.height, v);
-  const float* cdf = distribution.conditional.data() + size_t{row.index} * (size_t{distribution.width} + 1);
-  const DiscreteSample column = sample_cdf(cdf, distribution.width, u);
-  const float cells = static_cast<float>(distribution.width) * static_cast<float>(distribution.height);
-  return {coordinate(column.index, column.remapped, distribution.width),
-          coordinate(row.index, row.remapped, distribution.height), row.probability * column.probability * cells,
-          row.index * distribution.width + column.index};
+  const uint32_t width = distribution.width, height = distribution.height;
+  const DiscreteSample row = sample_cdf(distribution.marginal.data(), distribution.marginal_guide.data(), height, v);
+  const float* cdf = distribution.conditional.data() + size_t{row.index} * (size_t{width} + 1);
+  const int32_t* guide = distribution.conditional_guide.data() + size_t{row.index} * (size_t{guide_cells(width)} + 1);
+  const DiscreteSample column = sample_cdf(cdf, guide, width, u);
+  const float cells = static_cast<float>(width) * static_cast<float>(height);
+  return {coordinate(column.index, column.remapped, width), coordinate(row.index, row.remapped, height),
+          row.probability * column.probability * cells, row.index * width + column.index};
 }
 
 float square_pdf(const Distribution2D& distribution, float x, float y) {

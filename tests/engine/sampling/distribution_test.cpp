@@ -74,6 +74,7 @@ SampleColumns random_columns(size_t n) {
     c.u[i] = static_cast<float>(rng() >> 8) * 0x1p-24f;
     c.v[i] = static_cast<float>(rng() >> 8) * 0x1p-24f;
   }
+  c.u[8] = 1, c.u[9] = -1, c.u[10] = 7, c.u[11] = std::numeric_limits<float>::quiet_NaN();
   for (size_t i = 0; i < 4; ++i) c.u[i] = i & 1 ? largest_u : 0, c.v[i] = i & 2 ? largest_u : 0;
   return c;
 }
