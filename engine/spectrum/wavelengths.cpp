@@ -35,7 +35,7 @@ Samples importance() {
     const Color3 rgb = multiply(xyz_to_rgb(ColorSpace::srgb), Color3{matching[0][i], matching[1][i], matching[2][i]});
     norm[i] = std::sqrt(rgb[0] * rgb[0] + rgb[1] * rgb[1] + rgb[2] * rgb[2]);
   }
-  norm = smooth(norm, 20);
+  norm = smooth(norm, 30);
   double integral = 0.0;
   for (size_t i = 1; i < lambda_count; ++i) integral += 0.5 * (norm[i - 1] + norm[i]);
   for (double& value : norm) {
