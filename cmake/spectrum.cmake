@@ -1,5 +1,5 @@
-# Numbers into arrays at build time: the measured data of engine/spectrum/data, and the rgb-to-spectrum tables that
-# are computed from them. Sets spectrum_sources, the generated files of the engine.
+# Turns the measured data of engine/spectrum/data into arrays at build time. Sets spectrum_sources, the generated
+# files of the engine.
 set(spectrum_data ${PROJECT_SOURCE_DIR}/engine/spectrum/data)
 set(spectrum_generated ${PROJECT_BINARY_DIR}/generated/spectrum)
 file(MAKE_DIRECTORY ${spectrum_generated})
