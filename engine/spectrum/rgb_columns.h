@@ -23,7 +23,7 @@ struct SigmoidColumns {
 // For sRGB the reflectance's colour under the white illuminant differs from the one asked for by less than 5e-4 times
 // min(largest channel, 1 - smallest channel) + 5e-5 per linear channel (tested on a dense grid); greys are flat, black
 // and white exact. In wider spaces the same holds for colours that some reflectance has; the others come out less
-// saturated. The first call for a space prepares a table, about 20 ms; then a colour takes about 0.3 us on AVX-512.
+// saturated. The first call for a space prepares a table, up to 0.1 s; then a colour takes about 0.4 us on AVX-512.
 // Thread-safe. Multiples of a colour beyond 1 ("unbounded") are the caller's scale times the reflectance.
 void rgb_to_sigmoid(ColorSpace space, const RgbColumns& rgb, const SigmoidColumns& out, size_t count);
 
