@@ -28,24 +28,43 @@ class Descriptor {
   int fd_;
 };
 
+std::string cannot_read(const std::string& path, std::string_view why) {
+  return fmt::format("cannot read '{}': {}", path, why);
+}
+
+// A descriptor of a regular file of that size, or -1 after telling `fail` why not.
+template <class F>
+int open_regular(const std::string& path, size_t& size, const F& fail) {
+  const auto failed = [&](std::string_view why) { return fail(why), -1; };
+  // A path with a zero byte would be cut short there by the operating system.
+  if (path.empty() || path.find('\0') != std::string::npos) return failed("not a file name");
+  // Non-blocking, so that opening a pipe without a writer returns.
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) return failed(std::strerror(errno));
+  struct stat status {};
+  std::string_view why;
+  if (fstat(file, &status) != 0)
+    why = std::strerror(errno);
+  else if (S_ISDIR(status.st_mode))
+    why = "it is a folder";
+  else if (!S_ISREG(status.st_mode))
+    why = "not a regular file";
+  size = static_cast<size_t>(status.st_size);
+  if (why.empty()) return file;
+  close(file);
+  return failed(why);
+}
+
 }  // namespace
 
 bool read_file(const std::string& path, const SourceLocation& named_at, FileBytes& bytes, Diagnostics& diagnostics) {
   const auto fail = [&](std::string_view why) {
-    diagnostics.error(named_at, fmt::format("cannot read '{}': {}", path, why));
+    diagnostics.error(named_at, cannot_read(path, why));
     return false;
   };
-  // A path with a zero byte would be cut short there by the operating system.
-  if (path.empty() || path.find('\0') != std::string::npos) return fail("not a file name");
-  // Non-blocking, so that opening a pipe without a writer returns.
-  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (file.get() < 0) return fail(std::strerror(errno));
-  struct stat status {};
-  if (fstat(file.get(), &status) != 0) return fail(std::strerror(errno));
-  if (S_ISDIR(status.st_mode)) return fail("it is a folder");
-  if (!S_ISREG(status.st_mode)) return fail("not a regular file");
-
-  const auto size = static_cast<size_t>(status.st_size);
+  size_t size = 0;
+  const Descriptor file(open_regular(path, size, fail));
+  if (file.get() < 0) return false;
   try {
     bytes.data = std::make_unique_for_overwrite<char[]>(std::max<size_t>(size, 1));
   } catch (const std::bad_alloc&) {
@@ -60,6 +79,13 @@ bool read_file(const std::string& path, const SourceLocation& named_at, FileByte
     bytes.size += static_cast<size_t>(got);
   }
   return true;
+}
+
+bool check_readable(const std::string& path, const SourceLocation& named_at, Diagnostics& diagnostics) {
+  size_t size = 0;
+  const Descriptor file(
+      open_regular(path, size, [&](std::string_view why) { diagnostics.error(named_at, cannot_read(path, why)); }));
+  return file.get() >= 0;
 }
 
 std::string resolve_path(const std::string& path, const std::string& named_in) {

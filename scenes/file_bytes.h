@@ -18,6 +18,9 @@ struct FileBytes {
 // that asked for the file, and false.
 bool read_file(const std::string& path, const SourceLocation& named_at, FileBytes& bytes, Diagnostics& diagnostics);
 
+// Whether that would work, without reading; for files that a library opens itself.
+bool check_readable(const std::string& path, const SourceLocation& named_at, Diagnostics& diagnostics);
+
 // `path` as said in `named_in`: relative ones start at the folder of that file.
 std::string resolve_path(const std::string& path, const std::string& named_in);
 

@@ -1,0 +1,84 @@
+#include "scenes/images/read_image.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "engine/simd/portable_math.h"
+#include "scenes/file_bytes.h"
+
+namespace metamer {
+namespace {
+
+constexpr int64_t most_pixels = int64_t{1} << 31;
+
+float decode_srgb(float encoded) {
+  const double e = encoded;
+  return static_cast<float>(e <= 0.04045 ? e / 12.92 : portable::pow((e + 0.055) / 1.055, 2.4));
+}
+
+// Which channels of the file are red, green and blue: by name, else the first three, or one for all of grey.
+std::array<int, 3> color_channels(const OIIO::ImageSpec& spec) {
+  const std::array<int, 3> named = {spec.channelindex("R"), spec.channelindex("G"), spec.channelindex("B")};
+  if (named[0] >= 0 && named[1] >= 0 && named[2] >= 0) return named;
+  const bool is_grey = spec.nchannels < 3;
+  return is_grey ? std::array<int, 3>{0, 0, 0} : std::array<int, 3>{0, 1, 2};
+}
+
+bool check_pixels(const Image& image, Diagnostics& diagnostics) {
+  size_t count = 0, first = 0;
+  for (size_t i = 0; i < image.rgb.size(); ++i) {
+    const bool good = image.rgb[i] >= 0 && image.rgb[i] <= std::numeric_limits<float>::max();
+    if (!good && count++ == 0) first = i;
+  }
+  if (count == 0) return true;
+  diagnostics.error({image.name, 0},
+                    fmt::format("pixel ({}, {}) holds {}; expected finite values of at least 0 ({} such values in all)",
+                                first / 3 % image.width, first / 3 / image.width, image.rgb[first], count));
+  return false;
+}
+
+}  // namespace
+
+bool read_image(const std::string& path, const SourceLocation& named_at, Image& image, Diagnostics& diagnostics) {
+  if (!check_readable(path, named_at, diagnostics)) return false;
+  const auto input = OIIO::ImageInput::open(path);
+  const auto fail = [&](const std::string& why) {
+    diagnostics.error({path, 0}, fmt::format("cannot read this as an image: {}", why));
+    return false;
+  };
+  if (!input) return fail(OIIO::geterror());
+  const OIIO::ImageSpec& spec = input->spec();
+  const int64_t pixels = int64_t{spec.width} * spec.height;
+  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.depth > 1 || pixels > most_pixels) {
+    return fail(fmt::format("it has {} x {} pixels of {} channels", spec.width, spec.height, spec.nchannels));
+  }
+  const bool is_encoded =
+      spec.format.basetype == OIIO::TypeDesc::UINT8 || spec.format.basetype == OIIO::TypeDesc::UINT16;
+  const std::array<int, 3> channels = color_channels(spec);
+  image = Image{};
+  image.name = path;
+  image.width = static_cast<uint32_t>(spec.width);
+  image.height = static_cast<uint32_t>(spec.height);
+  const auto channel_count = static_cast<size_t>(spec.nchannels);
+  std::vector<float> all;
+  try {
+    all.resize(static_cast<size_t>(pixels) * channel_count);
+    image.rgb.resize(static_cast<size_t>(pixels) * 3);
+  } catch (const std::bad_alloc&) {
+    return fail(fmt::format("{} x {} pixels do not fit in memory", spec.width, spec.height));
+  }
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data())) return fail(input->geterror());
+  for (size_t pixel = 0; pixel < static_cast<size_t>(pixels); ++pixel) {
+    for (size_t c = 0; c < 3; ++c) {
+      const float value = all[pixel * channel_count + static_cast<size_t>(channels[c])];
+      image.rgb[3 * pixel + c] = is_encoded ? decode_srgb(value) : value;
+    }
+  }
+  return check_pixels(image, diagnostics);
+}
+
+}  // namespace metamer

@@ -1,0 +1,16 @@
+// The components of an entity, one reader each. All report what is wrong and set what is right.
+#pragma once
+#include "scenes/native/scene_context.h"
+
+namespace metamer {
+
+// The file's "meshes". Every one is read and checked, used or not.
+void read_meshes(SceneContext& context, const Json::Value& meshes);
+
+std::optional<Geometry> read_geometry(SceneContext& context, const Json::Value& value);
+std::optional<Material> read_material(SceneContext& context, const Json::Value& value);
+std::optional<Light> read_light(SceneContext& context, const Json::Value& value);
+std::optional<Camera> read_camera(const SceneContext& context, const Json::Value& value);
+Visibility read_visibility(const SceneContext& context, const Json::Value& value);
+
+}  // namespace metamer

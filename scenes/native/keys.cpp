@@ -1,0 +1,79 @@
+#include "scenes/native/keys.h"
+
+namespace metamer {
+namespace {
+
+constexpr bool required = true;
+
+constexpr KeySpec scene[] = {{"$schema"}, {"metamer", required}, {"units"},  {"settings"},
+                             {"spectra"}, {"materials"},         {"meshes"}, {"entities", required}};
+constexpr KeySpec settings[] = {{"size"},   {"samples"},  {"max_depth"},   {"seed"},
+                                {"filter"}, {"exposure"}, {"sensor_scale"}};
+constexpr KeySpec filter_box[] = {{"type", required}, {"radius"}};
+constexpr KeySpec filter_triangle[] = {{"type", required}, {"radius"}};
+constexpr KeySpec filter_gaussian[] = {{"type", required}, {"radius"}, {"sigma"}};
+constexpr KeySpec spectrum[] = {{"constant"}, {"table"}, {"named"}, {"blackbody"},
+                                {"daylight"}, {"rgb"},   {"space"}, {"scale"}};
+constexpr KeySpec material_diffuse[] = {{"type", required}, {"reflectance", required}};
+constexpr KeySpec material_conductor[] = {{"type", required}, {"metal"},     {"eta"},
+                                          {"kappa"},          {"roughness"}, {"fresnel"}};
+constexpr KeySpec material_dielectric[] = {{"type", required}, {"glass"}, {"eta"}, {"fresnel"}};
+constexpr KeySpec mesh[] = {{"file"}, {"positions"}, {"indices"}, {"normals"}, {"uvs"}};
+constexpr KeySpec entity[] = {{"name"},     {"parent"}, {"transform"}, {"geometry"},
+                              {"material"}, {"light"},  {"camera"},    {"visibility"}};
+constexpr KeySpec transform[] = {{"matrix"}, {"translate"}, {"rotate"}, {"scale"}, {"look_at"}};
+constexpr KeySpec rotate[] = {{"axis", required}, {"degrees", required}};
+constexpr KeySpec look_at[] = {{"from", required}, {"to", required}, {"up"}};
+constexpr KeySpec geometry_mesh[] = {{"type", required}, {"mesh", required}, {"flip_normal"}};
+constexpr KeySpec geometry_sphere[] = {{"type", required}, {"radius"}, {"flip_normal"}};
+constexpr KeySpec geometry_disk[] = {{"type", required}, {"radius"}, {"inner_radius"}, {"height"}, {"flip_normal"}};
+constexpr KeySpec geometry_rectangle[] = {{"type", required}, {"width"}, {"depth"}, {"flip_normal"}};
+constexpr KeySpec light_area[] = {{"type", required}, {"radiance"}, {"luminance"},
+                                  {"spectrum"},       {"scale"},    {"two_sided"}};
+constexpr KeySpec light_point[] = {{"type", required}, {"intensity"}, {"candela"}, {"lumens"}, {"spectrum"}, {"scale"}};
+constexpr KeySpec light_directional[] = {{"type", required}, {"irradiance"}, {"lux"}, {"spectrum"}, {"scale"}};
+constexpr KeySpec light_environment[] = {{"type", required}, {"radiance"}, {"luminance"}, {"spectrum"},
+                                         {"scale"},          {"image"},    {"mapping"},   {"space"}};
+constexpr KeySpec camera_perspective[] = {
+    {"type", required}, {"fov"}, {"lens_radius"}, {"focal_distance"}, {"screen_window"}};
+constexpr KeySpec camera_orthographic[] = {
+    {"type", required}, {"screen_height"}, {"lens_radius"}, {"focal_distance"}, {"screen_window"}};
+constexpr KeySpec visibility[] = {{"camera"}, {"bounces"}, {"shadows"}};
+
+constexpr ObjectSpec specs[] = {{"scene", scene},
+                                {"settings", settings},
+                                {"filter.box", filter_box},
+                                {"filter.triangle", filter_triangle},
+                                {"filter.gaussian", filter_gaussian},
+                                {"spectrum", spectrum},
+                                {"material.diffuse", material_diffuse},
+                                {"material.conductor", material_conductor},
+                                {"material.dielectric", material_dielectric},
+                                {"mesh", mesh},
+                                {"entity", entity},
+                                {"transform", transform},
+                                {"rotate", rotate},
+                                {"look_at", look_at},
+                                {"geometry.mesh", geometry_mesh},
+                                {"geometry.sphere", geometry_sphere},
+                                {"geometry.disk", geometry_disk},
+                                {"geometry.rectangle", geometry_rectangle},
+                                {"light.area", light_area},
+                                {"light.point", light_point},
+                                {"light.directional", light_directional},
+                                {"light.environment", light_environment},
+                                {"camera.perspective", camera_perspective},
+                                {"camera.orthographic", camera_orthographic},
+                                {"visibility", visibility}};
+
+}  // namespace
+
+std::span<const ObjectSpec> all_object_specs() { return specs; }
+
+const ObjectSpec* find_object_spec(std::string_view name) {
+  for (const ObjectSpec& spec : specs)
+    if (spec.name == name) return &spec;
+  return nullptr;
+}
+
+}  // namespace metamer

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "scenes/file_bytes.h"
+#include "scenes/images/read_image.h"
+#include "scenes/native/components.h"
+#include "scenes/native/spectra.h"
+
+namespace metamer {
+namespace {
+
+// How a type of light may say how bright it is: by a spectrum in radiometric units, or by a photometric number and the
+// spectrum's shape. `per_unit` turns the number into the quantity whose spectrum the component holds.
+struct Photometry {
+  std::string_view key;
+  double per_unit;
+};
+struct Brightness {
+  std::string_view type, radiometric;
+  std::array<Photometry, 2> photometric;  // a second without a key is none
+};
+constexpr Brightness brightnesses[] = {
+    {"area", "radiance", {{{"luminance", 1}, {}}}},
+    {"environment", "radiance", {{{"luminance", 1}, {}}}},
+    {"point", "intensity", {{{"candela", 1}, {"lumens", 1 / (4 * std::numbers::pi)}}}},
+    {"directional", "irradiance", {{{"lux", 1}, {}}}},
+};
+
+const Brightness& brightness_of(std::string_view type) {
+  for (const Brightness& brightness : brightnesses)
+    if (brightness.type == type) return brightness;
+  return brightnesses[0];
+}
+
+SpectrumId white_of(SceneContext& context, ColorSpace space) {
+  SpectrumSet& set = context.scene.spectra;
+  const SpectrumId white = set.add_white(space);
+  return set.scaled(white, 1 / set.luminance(white)).id;
+}
+
+// The spectrum whose shape is `shape` and whose luminance is `target`.
+SpectrumId normalized(SceneContext& context, const Json::Value& at, SpectrumId shape, double target) {
+  SpectrumSet& set = context.scene.spectra;
+  const double luminance = set.luminance(shape);
+  const SpectrumResult result = luminance > 0 ? set.scaled(shape, target / luminance) : SpectrumResult{};
+  if (!(luminance > 0)) context.reader.error(at, "'spectrum' is invisible: its luminance is 0 and cannot be scaled");
+  if (!result.ok()) context.reader.error(at, fmt::format("'spectrum': {}", result.error));
+  return result.id;
+}
+
+SpectrumId read_brightness(SceneContext& context, const JsonObject& object, ColorSpace space) {
+  const Brightness& ways = brightness_of(object.type());
+  std::vector<std::string_view> keys = {ways.radiometric};
+  for (const Photometry& photometry : ways.photometric)
+    if (!photometry.key.empty()) keys.push_back(photometry.key);
+  const bool is_image = object.type() == "environment" && object.has("image");
+  bool has_any = false;
+  for (const std::string_view key : keys) has_any = has_any || object.has(key);
+  const Json::Value* shape = object.find("spectrum");
+  const std::string_view way = is_image && !has_any ? std::string_view() : object.one_of(keys);
+  if (way.empty() || way == ways.radiometric) {
+    if (shape != nullptr)
+      context.reader.error(
+          *shape, fmt::format("'spectrum' is the shape for '{}'; a spectrum in absolute units goes to '{}'", keys[1],
+                              ways.radiometric));
+    return way.empty() ? white_of(context, space) : read_spectrum(context, *object.find(way), way, Quantity::light);
+  }
+  double per_unit = 1;
+  for (const Photometry& photometry : ways.photometric)
+    if (photometry.key == way) per_unit = photometry.per_unit;
+  const double target = object.number(way, not_negative, 1) * per_unit;
+  if (shape == nullptr) return normalized(context, object.value(), white_of(context, space), target);
+  const size_t errors_before = context.reader.diagnostics().error_count();
+  const SpectrumId id = read_spectrum(context, *shape, "spectrum", Quantity::light);
+  return context.reader.diagnostics().error_count() == errors_before ? normalized(context, *shape, id, target) : id;
+}
+
+void read_environment_image(SceneContext& context, const JsonObject& object, ColorSpace space, Light& light) {
+  constexpr std::string_view mappings[] = {"latitude_longitude", "equal_area"};  // in the order of ImageMapping
+  const JsonReader& reader = context.reader;
+  const auto mapping = static_cast<ImageMapping>(object.choice("mapping", mappings, 0));
+  if (!object.has("image")) {
+    for (const std::string_view key : {"mapping", "space"})
+      if (object.has(key)) reader.error(*object.find(key), fmt::format("'{}' goes with 'image' only", key));
+    return;
+  }
+  const Json::Value& value = *object.find("image");
+  const std::string file = reader.text(value, "image");
+  if (file.empty()) return;
+  Image image;
+  const std::string path = resolve_path(file, reader.document().path());
+  if (!read_image(path, reader.document().at(value), image, reader.diagnostics())) return;
+  image.mapping = mapping;
+  image.color_space = space;
+  if (mapping == ImageMapping::equal_area && image.width != image.height) {
+    reader.error(value, fmt::format("'image' has {} x {} pixels; expected a square for the mapping 'equal_area'",
+                                    image.width, image.height));
+  }
+  light.image = static_cast<ImageId>(context.scene.images.size());
+  context.scene.images.push_back(std::move(image));
+}
+
+}  // namespace
+
+std::optional<Light> read_light(SceneContext& context, const Json::Value& value) {
+  const JsonObject object(context.reader, value, "light");
+  if (!object.is_valid()) return std::nullopt;
+  Light light;
+  light.kind = object.type() == "area"          ? LightKind::area
+               : object.type() == "point"       ? LightKind::point
+               : object.type() == "directional" ? LightKind::directional
+                                                : LightKind::environment;
+  light.scale = object.number_f("scale", not_negative, 1);
+  ColorSpace space = ColorSpace::srgb;
+  if (light.kind == LightKind::area) light.two_sided = object.boolean("two_sided", false) ? 1 : 0;
+  if (light.kind == LightKind::environment) {
+    space = static_cast<ColorSpace>(object.choice("space", color_space_names(), 0));
+    read_environment_image(context, object, space, light);
+  }
+  light.spectrum = read_brightness(context, object, space);
+  return light;
+}
+
+}  // namespace metamer

@@ -1,0 +1,56 @@
+#include "scenes/native/settings.h"
+
+namespace metamer {
+namespace {
+
+constexpr Range filter_radius{0.5, 16};  // pixels; below 0.5 parts of the picture would be seen by no pixel
+
+Filter read_filter(const SceneContext& context, const Json::Value& value) {
+  const JsonObject object(context.reader, value, "filter");
+  if (!object.is_valid()) return {};
+  Filter filter;
+  filter.kind = object.type() == "box"        ? FilterKind::box
+                : object.type() == "triangle" ? FilterKind::triangle
+                                              : FilterKind::gaussian;
+  const double usual = object.type() == "box" ? 0.5 : object.type() == "triangle" ? 1 : 1.5;
+  std::array<double, 2> radius{usual, usual};
+  if (const Json::Value* given = object.find("radius")) {
+    if (given->isArray())
+      context.reader.numbers(*given, "radius", filter_radius, radius);
+    else
+      radius.fill(context.reader.number(*given, "radius", filter_radius, usual));
+  }
+  filter.radius_x = static_cast<float>(radius[0]);
+  filter.radius_y = static_cast<float>(radius[1]);
+  constexpr Range sigma{0.01, 16};
+  if (filter.kind == FilterKind::gaussian) filter.sigma = object.number_f("sigma", sigma, filter.sigma);
+  return filter;
+}
+
+}  // namespace
+
+RenderSettings read_settings(const SceneContext& context, const Json::Value& value) {
+  const JsonReader& reader = context.reader;
+  const JsonObject object(reader, value, *find_object_spec("settings"), "settings");
+  RenderSettings settings;
+  if (!object.is_valid()) return settings;
+  if (const Json::Value* size = object.find("size")) {
+    constexpr uint32_t most = 65536;  // pixels along a side
+    if (size->isArray() && size->size() == 2) {
+      settings.width = reader.integer((*size)[0], "size[0]", 1, most, settings.width);
+      settings.height = reader.integer((*size)[1], "size[1]", 1, most, settings.height);
+    } else {
+      reader.expected(*size, "size", "[width, height] in pixels");
+    }
+  }
+  constexpr Range stops{-64, 64};
+  settings.samples_per_pixel = object.integer("samples", 1, 1u << 30, settings.samples_per_pixel);
+  settings.max_depth = object.integer("max_depth", 0, 1u << 16, settings.max_depth);
+  settings.seed = object.integer("seed", 0, 0xffffffffu, settings.seed);
+  settings.exposure_stops = object.number_f("exposure", stops, settings.exposure_stops);
+  settings.sensor_scale = object.number_f("sensor_scale", positive, settings.sensor_scale);
+  if (const Json::Value* filter = object.find("filter")) settings.filter = read_filter(context, *filter);
+  return settings;
+}
+
+}  // namespace metamer
