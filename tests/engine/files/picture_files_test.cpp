@@ -140,22 +140,22 @@ TEST_F(PictureFiles, DamagedCheckpointsAreRefusedAndChangeNothing) {
   EXPECT_EQ(read.width(), 2u);
 }
 
-// Every byte flipped in turn: an answer or an error, never a crash.
+// One bit of every seventh byte flipped in turn: an answer or an error, never a crash.
 TEST_F(PictureFiles, FlippedBytesNeverCrashTheReader) {
   Film film(3, 2);
   Picture picture{3, 2, Column<float>(6), Column<float>(6), Column<float>(6)};
   ASSERT_EQ(write_exr(path("a.exr"), picture, some_header(), {}, &film), std::nullopt);
   const std::string whole = bytes_of(path("a.exr"));
   size_t refused = 0;
-  for (size_t i = 0; i < whole.size(); ++i) {
+  for (size_t i = 0; i < whole.size(); i += 7) {
     std::string bytes = whole;
-    bytes[i] = static_cast<char>(bytes[i] ^ (1 << i % 8));
+    bytes[i] = static_cast<char>(bytes[i] ^ (1 << i / 7 % 8));
     write_bytes(path("b.exr"), bytes);
     Film read;
     FrameHeader header;
     refused += read_film(path("b.exr"), read, header).has_value();
   }
-  EXPECT_GT(refused, whole.size() / 10);
+  EXPECT_GT(refused, whole.size() / 70);
 }
 
 TEST_F(PictureFiles, NothingIsLeftWhereWritingFails) {

@@ -56,9 +56,7 @@ Samples permuted(const Samples& samples, uint32_t seed) {
   return result;
 }
 
-void add(TileFilm& tile, const Samples& s) {
-  add_samples(tile, s.pixel, s.sample, s.X.data(), s.Y.data(), s.Z.data());
-}
+void add(TileFilm& tile, const Samples& s) { add_samples(tile, s.pixel, s.sample, s.X.data(), s.Y.data(), s.Z.data()); }
 
 // All samples [begin, end) of the film as one unit of work.
 void expose(Film& film, const Samples& samples, uint32_t begin, uint32_t end) {
@@ -113,15 +111,26 @@ TEST(Film, SumsAreTheSameBytesForEveryTileAndPass) {
   }
 }
 
+// Long enough for the threads to collide thousands of times; without the locks sums are lost.
 TEST(Film, ThreadsMayFlushTheSamePixelsAtOnce) {
-  const Samples samples = wild_samples(0, 32, 3);
-  Film alone(width, height), together(width, height);
-  expose(alone, samples, 0, 32);
+  constexpr uint32_t thread_count = 4, flushes = 20000;
+  const Samples samples = wild_samples(0, 4, 3);
+  TileFilm tile;
+  tile.reset(0, 0, width, height, 0, 4);
+  add(tile, samples);
+  Film film(width, height);
   std::vector<std::thread> threads;
-  for (uint32_t t = 0; t < 8; ++t)
-    threads.emplace_back([&, t] { expose_in_tiles(together, samples, 1 + t % 3, 4 * t, 4 * t + 4); });
+  for (uint32_t t = 0; t < thread_count; ++t)
+    threads.emplace_back([&] {
+      for (uint32_t i = 0; i < flushes; ++i) flush(film, tile);
+    });
   for (std::thread& thread : threads) thread.join();
-  EXPECT_TRUE(alone == together);
+  for (size_t p = 0; p < film.pixel_count(); ++p)
+    for (uint32_t r = 0; r < replicate_count; ++r) {
+      ASSERT_EQ(film.counts()[p].replicate[r], thread_count * flushes);
+      for (int c = 0; c < 3; ++c)
+        ASSERT_TRUE(film.sums()[p].xyz[r][c] == tile.sums()[p].xyz[r][c] * (thread_count * flushes));
+    }
 }
 
 // Two limbs of 64 bits and plain long multiplication by doubling: shares nothing with to_fixed.
