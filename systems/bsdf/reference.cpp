@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 
+#include "engine/sampling/warps.h"
 #include "systems/bsdf/limits.h"
 
 namespace metamer::reference {
@@ -98,10 +99,10 @@ BsdfValue eval_diffuse(const Direction& wo, const Spectrum4& albedo, const Direc
 
 BsdfSample sample_diffuse(const Direction& wo, const Spectrum4& albedo, double u, double v) {
   BsdfSample sample;
-  const double r = std::sqrt(v), phi = 2 * pi * u;
-  sample.wi = {r * std::cos(phi), r * std::sin(phi), side_of(wo) * std::sqrt(1 - v)};
-  sample.weight = albedo;
-  sample.pdf = std::abs(sample.wi.z) / pi;
+  const PointD3 up = warps::cosine_hemisphere(u, v);
+  sample.wi = {up.x, up.y, up.z * side_of(wo)};
+  sample.pdf = warps::cosine_hemisphere_pdf(up.z);
+  if (sample.pdf > 0) sample.weight = albedo;
   return sample;
 }
 
