@@ -54,7 +54,7 @@ HWY_INLINE Vec3 refract(const Vec3& v, const Vec3& n, VF inv_eta, VF cos_theta_t
 // s = sin(theta_i), g = eta cos(theta_t): r_s = (1 - eta^2) / (c + g)^2 and r_p / r_s = (c g - s^2) / (c g + s^2) (Born
 // & Wolf, Principles of Optics, section 1.5.2, in sums without cancellation), so that (r_s^2 + r_p^2) / 2 = r_s^2 (c^2
 // g^2 + s^4) / (c g + s^2)^2. Grazing incidence gives 1 unless eta = 1, which gives 0. Largest error against double:
-// 1e-5 while |g^2| > 1e-3; nearer to the critical angle, where the slope is infinite, 8e-3. Tested for eta in [1/3, 3].
+// 2e-5 while |g^2| > 1e-3; nearer to the critical angle, where the slope is infinite, 8e-3. Tested for eta in [1/3, 3].
 HWY_INLINE DielectricBoundary fresnel_dielectric(VF eta, VF inv_eta, VF cos_theta_i) {
   const FloatTag d;
   const VF one = splat(1.0f);
