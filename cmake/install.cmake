@@ -1,5 +1,5 @@
-# What `cmake --install` puts where: the program and the scenes it ships, one static library per room, their headers
-# under include/metamer (so that "engine/..." stays the path to include), and the files find_package(metamer) reads.
+# What `cmake --install` puts where: the program, one static library per room, their headers under
+# include/metamer (so that "engine/..." stays the path to include), and the files find_package(metamer) reads.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -21,7 +21,6 @@ set_target_properties(metamer_library PROPERTIES EXPORT_NAME metamer)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/metamer)
 install(TARGETS metamer_flags metamer_engine metamer_systems metamer_scenes metamer_library EXPORT metamer)
 install(TARGETS metamer)
-install(DIRECTORY scenes/library/ DESTINATION ${CMAKE_INSTALL_DATADIR}/metamer/scenes OPTIONAL)
 install(EXPORT metamer NAMESPACE metamer:: FILE metamerTargets.cmake DESTINATION ${package_folder})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/metamerConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES cmake/metamerConfig.cmake cmake/dependencies.cmake ${PROJECT_BINARY_DIR}/metamerConfigVersion.cmake

@@ -44,7 +44,6 @@ int64_t chosen_target() {
 
 std::vector<std::string_view> names_of(const std::vector<Isa>& isas) {
   std::vector<std::string_view> names;
-  names.reserve(isas.size());
   for (const Isa& isa : isas) names.push_back(isa.name);
   return names;
 }
@@ -58,7 +57,7 @@ void disable_targets(int64_t targets) {
 std::vector<Isa> available_isas() {
   const int64_t chosen = chosen_target();
   disable_targets(0);
-  std::vector<Isa> isas = isas_of(hwy::SupportedTargets() & HWY_TARGETS);
+  const std::vector<Isa> isas = isas_of(hwy::SupportedTargets() & HWY_TARGETS);
   disable_targets(~chosen);
   return isas;
 }

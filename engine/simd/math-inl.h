@@ -118,7 +118,7 @@ HWY_INLINE VF exp(VF x) {
   return hn::IfThenElse(hn::IsNaN(x), x, value);
 }
 
-// Natural logarithm, relative 2e-7 also near 1; -infinity at 0, NaN below.
+// Natural logarithm, relative 2e-7 (absolute 1e-7 near 1 suffices for that too); -infinity at 0, NaN below.
 HWY_INLINE VF log(VF x) {
   VF m, e;
   math_detail::split_exponent(x, &m, &e);

@@ -59,22 +59,6 @@ const Space& space_of(ColorSpace space) {
   return spaces[static_cast<size_t>(space)];
 }
 
-// M with the least sum over 1 nm of |M a - b|^2: (sum b a^T) (sum a a^T)^-1.
-Matrix3 least_squares(const std::array<Samples, 3>& a, const std::array<Samples, 3>& b) {
-  Matrix3 ba;
-  Matrix3 aa;
-  for (size_t r = 0; r < 3; ++r) {
-    for (size_t c = 0; c < 3; ++c) {
-      ba[r][c] = aa[r][c] = 0.0;
-      for (size_t i = 390 - lambda_min_nm; i <= 730 - lambda_min_nm; ++i) {
-        ba[r][c] += b[r][i] * a[c][i];
-        aa[r][c] += a[r][i] * a[c][i];
-      }
-    }
-  }
-  return multiply(ba, inverse(aa));
-}
-
 }  // namespace
 
 Matrix3 multiply(const Matrix3& a, const Matrix3& b) {
@@ -143,23 +127,6 @@ Matrix3 adaptation_matrix(Adaptation method, const Color3& from, const Color3& t
     for (size_t c = 0; c < 3; ++c) scaled[r][c] *= cone_to[r] / cone_from[r];
   }
   return multiply(inverse(cone), scaled);
-}
-
-const Matrix3& observer_to_xyz(Observer observer) {
-  static const Matrix3 identity = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
-  static const Matrix3 from_stiles_burch =
-      least_squares(observer_table(Observer::stiles_burch1955).matching, observer_table(Observer::cie1931).matching);
-  return observer == Observer::stiles_burch1955 ? from_stiles_burch : identity;
-}
-
-Matrix3 develop_matrix(Observer observer, ColorSpace display) {
-  if (observer == Observer::cie1931) return xyz_to_rgb(display);
-  Color3 seen = multiply(observer_to_xyz(observer), integrate_xyz(white_illuminant(display), observer));
-  const double luminance = seen[1];
-  for (double& component : seen) component /= luminance;
-  const Matrix3 adapted =
-      multiply(adaptation_matrix(Adaptation::cat16, seen, white_xyz(display)), observer_to_xyz(observer));
-  return multiply(xyz_to_rgb(display), adapted);
 }
 
 }  // namespace metamer

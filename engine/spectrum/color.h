@@ -52,15 +52,4 @@ enum class Adaptation : uint8_t { bradford, cat16 };
 // Y). Bradford: Lam 1985 in its linear form (ICC.1:2010, annex E). CAT16: Li et al., Color Res. Appl. 42(6), 2017.
 Matrix3 adaptation_matrix(Adaptation method, const Color3& from, const Color3& to);
 
-// The fixed matrix from an observer's tristimulus values to XYZ: the identity for all but Stiles & Burch, whose r, g, b
-// it maps to the CIE 1931 functions with the least sum of squares over 1 nm, 390..730 nm. The root mean square residual
-// of that is 0.0196 in xbar, 0.0193 in ybar and 0.0914 in zbar (their maxima are 1.06, 1 and 1.78): CIE 1931 rests on
-// other measurements, and sees too little blue.
-const Matrix3& observer_to_xyz(Observer observer);
-
-// From an observer's integrals of L xbar d(lambda) to linear RGB of a display: for CIE 1931 `xyz_to_rgb`; for others
-// first to XYZ and adapted (CAT16) from how that observer sees the display's white to how CIE 1931 does, so that white
-// is neutral for every observer, and has the luminance that the observer gives it.
-Matrix3 develop_matrix(Observer observer, ColorSpace display);
-
 }  // namespace metamer

@@ -22,16 +22,10 @@ SpectrumRow flat_row(double scale, uint32_t table = 0) {
 
 bool representable(double value) { return std::abs(value) <= largest_value; }  // false for NaN
 
-SpectrumResult failure(std::string error) { return {zero_spectrum, std::move(error), 0.0}; }
+SpectrumResult failure(std::string error) { return {zero_spectrum, std::move(error)}; }
 
 SpectrumResult not_representable(double value) {
   return failure(fmt::format("{} is not a finite number of magnitude up to {:g}", value, largest_value));
-}
-
-bool valid_temperature(double kelvin) { return kelvin > 0.0 && kelvin <= 1e9; }
-
-SpectrumResult bad_temperature(double kelvin) {
-  return failure(fmt::format("temperature {} K: must be above 0 and at most 1e9", kelvin));
 }
 
 // FNV-1a over 32-bit words.
@@ -110,7 +104,7 @@ SpectrumSet::StoredTable SpectrumSet::store_table(const Samples& samples) {
 
 SpectrumResult SpectrumSet::add_constant(double value) {
   if (!representable(value)) return not_representable(value);
-  return {append(flat_row(value)), {}, 0.0};
+  return {append(flat_row(value)), {}};
 }
 
 SpectrumResult SpectrumSet::add_samples(const Samples& samples) {
@@ -122,7 +116,7 @@ SpectrumResult SpectrumSet::add_samples(const Samples& samples) {
   if (std::max(std::abs(*low), std::abs(*high)) < std::numeric_limits<float>::min()) return {};
   if (*low == *high) return add_constant(*low);
   const StoredTable stored = store_table(samples);
-  return {append(flat_row(stored.scale, stored.index)), {}, 0.0};
+  return {append(flat_row(stored.scale, stored.index)), {}};
 }
 
 SpectrumResult SpectrumSet::add_table(std::span<const double> lambda_nm, std::span<const double> values,
@@ -140,32 +134,33 @@ SpectrumResult SpectrumSet::add_rgb(const Color3& rgb, RgbKind kind, ColorSpace 
     }
   }
   SpectrumRow row = flat_row(rgb[0]);
-  double color_error = 0.0;
   if (rgb[0] != rgb[1] || rgb[1] != rgb[2]) {
     const double scale = kind == RgbKind::albedo ? 1.0 : 2.0 * std::max({rgb[0], rgb[1], rgb[2]});
-    const SigmoidFit fit = fit_sigmoid(space, {rgb[0] / scale, rgb[1] / scale, rgb[2] / scale});
-    row.c0 = static_cast<float>(fit.c[0]);
-    row.c1 = static_cast<float>(fit.c[1]);
-    row.c2 = static_cast<float>(fit.c[2]);
-    row.scale = static_cast<float>(scale);
-    color_error = fit.error;
+    const SigmoidCoefficients c = fit_sigmoid(space, {rgb[0] / scale, rgb[1] / scale, rgb[2] / scale}).c;
+    row = {static_cast<float>(c[0]),
+           static_cast<float>(c[1]),
+           static_cast<float>(c[2]),
+           static_cast<float>(scale),
+           0,
+           {0, 0, 0}};
   }
-  if (kind == RgbKind::illuminant) {
-    const StoredTable white = store_table(white_illuminant(space));
-    row.table = white.index;
-    row.scale = static_cast<float>(row.scale * white.scale);
-  }
+  if (kind != RgbKind::illuminant) return {append(row), {}};
+  const StoredTable white = store_table(white_illuminant(space));
+  row.table = white.index;
+  row.scale = static_cast<float>(row.scale * white.scale);
   if (!representable(row.scale)) return not_representable(row.scale);
-  return {append(row), {}, color_error};
+  return {append(row), {}};
 }
 
 SpectrumResult SpectrumSet::add_blackbody(double kelvin) {
-  if (!valid_temperature(kelvin)) return bad_temperature(kelvin);
+  if (!(kelvin > 0.0 && kelvin <= 1e9))
+    return failure(fmt::format("temperature {} K: must be above 0 and up to 1e9", kelvin));
   return add_samples(blackbody(kelvin));
 }
 
 SpectrumResult SpectrumSet::add_blackbody_normalized(double kelvin) {
-  if (!valid_temperature(kelvin)) return bad_temperature(kelvin);
+  if (!(kelvin > 0.0 && kelvin <= 1e9))
+    return failure(fmt::format("temperature {} K: must be above 0 and up to 1e9", kelvin));
   constexpr double wien_nm_kelvin = 2.897771955e6;  // CODATA 2018
   const double peak = planck_radiance(kelvin, wien_nm_kelvin / kelvin);
   Samples samples = blackbody(kelvin);
@@ -194,7 +189,7 @@ SpectrumResult SpectrumSet::scaled(SpectrumId id, double factor) {
   const double scale = row.scale * factor;
   if (!representable(scale)) return not_representable(scale);
   row.scale = static_cast<float>(scale);
-  return {append(row), {}, 0.0};
+  return {append(row), {}};
 }
 
 SpectrumResult SpectrumSet::product(SpectrumId a, SpectrumId b) {

@@ -44,9 +44,6 @@ enum class RgbKind : uint8_t { albedo, unbounded, illuminant };
 struct SpectrumResult {
   SpectrumId id = zero_spectrum;
   std::string error;
-  // Of add_rgb: how far the colour of the fitted reflectance (whose largest channel is at most 1) is from the one asked
-  // for, largest channel. Above 1e-6 only for colours of wide spaces that no reflectance has.
-  double color_error = 0.0;
   bool ok() const { return error.empty(); }
 };
 

@@ -1,11 +1,11 @@
 // The directives and the graphics state they change.
+#include "scenes/pbrt/directives.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
-
-#include "scenes/pbrt/reader.h"
 
 namespace metamer::pbrt {
 namespace {
@@ -20,13 +20,6 @@ struct Directive {
   Where where;
   void (*read)(Reader&, Tokenizer&, std::string_view, Source);
 };
-
-std::optional<std::string> read_string(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
-  if (tokens.peek().kind == TokenKind::string) return std::string(tokens.next().text);
-  reader.messages.error(source, fmt::format("{} expects a quoted name, not {}", directive, show(tokens.peek())));
-  tokens.skip_to_directive();
-  return std::nullopt;
-}
 
 // A directive of the form: Name "kind" parameters. Calls read(kind, parameters).
 template <class F>
@@ -85,8 +78,7 @@ void use_named_material(Reader& reader, Tokenizer& tokens, std::string_view dire
   if (name) reader.state.material = named_material(reader, *name, source).entity;
 }
 
-void make_named_medium(Reader& reader, std::string_view name, Parameters& parameters) {
-  reader.media.emplace(name);
+void make_named_medium(Reader& reader, std::string_view, Parameters& parameters) {
   parameters.ignore_the_rest();
   reader.messages.warning_once("media", parameters.source(), "media are not supported yet; space is empty");
 }
@@ -99,16 +91,25 @@ void medium_interface(Reader& reader, Tokenizer& tokens, std::string_view direct
 
 // Texture "name" "spectrum" "kind" parameters.
 void texture(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
+  constexpr std::string_view kinds[] = {"bilerp", "checkerboard", "constant", "directionmix", "dots",
+                                        "fbm",    "imagemap",     "marble",   "mix",          "ptex",
+                                        "scale",  "windy",        "wrinkled"};
   const auto name = read_string(reader, tokens, directive, source);
   if (!name) return;
   const auto type = read_string(reader, tokens, directive, source);
   if (!type) return;
   if (*type != "spectrum" && *type != "float") {
     reader.messages.error(source, fmt::format("a texture is \"spectrum\" or \"float\", not \"{}\"", *type));
+    return tokens.skip_to_directive();
   }
-  reader.textures.insert(*name);
+  const bool fresh = (*type == "float" ? reader.float_textures : reader.spectrum_textures).insert(*name).second;
+  if (!fresh) reader.messages.error(source, fmt::format("texture '{}' is defined twice", *name));
   read_with_parameters(reader, tokens, directive, source, {}, [&](const std::string& kind, Parameters& parameters) {
     parameters.ignore_the_rest();
+    if (std::find(std::begin(kinds), std::end(kinds), kind) == std::end(kinds)) {
+      return reader.messages.error(source,
+                                   fmt::format("there is no texture \"{}\"{}", kind, did_you_mean(kind, kinds)));
+    }
     reader.messages.warning_once(
         "texture " + kind, source,
         fmt::format("texture \"{}\" is not supported yet; what it would colour gets its default value", kind));
@@ -164,95 +165,6 @@ void option(Reader& reader, Tokenizer& tokens, std::string_view directive, Sourc
 void accelerator(Reader& reader, std::string_view, Parameters& parameters) {
   parameters.ignore_the_rest();
   reader.messages.note_once("accelerator", parameters.source(), parameters.what() + ": Embree's is always used");
-}
-
-void push(Reader& reader, Block block, Source source) { reader.stack.push_back({reader.state, block, source}); }
-
-// Ends the innermost block if it is of this kind.
-bool pop(Reader& reader, Block block, std::string_view directive, std::string_view begin, Source source) {
-  if (reader.stack.empty() || reader.stack.back().block != block) {
-    reader.messages.error(source, fmt::format("{} without {}", directive, begin));
-    return false;
-  }
-  reader.state = std::move(reader.stack.back().state);
-  reader.stack.pop_back();
-  return true;
-}
-
-void attribute_begin(Reader& reader, Tokenizer&, std::string_view, Source source) {
-  push(reader, Block::attribute, source);
-}
-void attribute_end(Reader& reader, Tokenizer&, std::string_view directive, Source source) {
-  pop(reader, Block::attribute, directive, "AttributeBegin", source);
-}
-
-// Deprecated in pbrt-v4, which takes them as AttributeBegin and AttributeEnd.
-void transform_begin(Reader& reader, Tokenizer&, std::string_view, Source source) {
-  reader.messages.warning_once("TransformBegin", source, "TransformBegin is deprecated; it means AttributeBegin");
-  push(reader, Block::transform, source);
-}
-void transform_end(Reader& reader, Tokenizer&, std::string_view directive, Source source) {
-  pop(reader, Block::transform, directive, "TransformBegin", source);
-}
-
-void object_begin(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
-  const auto name = read_string(reader, tokens, directive, source);
-  push(reader, Block::object, source);
-  if (!name) return;
-  if (reader.object) return reader.messages.error(source, "ObjectBegin inside ObjectBegin");
-  if (reader.objects.contains(*name)) reader.messages.error(source, fmt::format("object '{}' is defined twice", *name));
-  reader.objects.try_emplace(*name);
-  reader.object = *name;
-}
-
-void object_end(Reader& reader, Tokenizer&, std::string_view directive, Source source) {
-  if (!pop(reader, Block::object, directive, "ObjectBegin", source)) return;
-  const bool inside = std::any_of(reader.stack.begin(), reader.stack.end(),
-                                  [](const SavedState& s) { return s.block == Block::object; });
-  if (!inside) reader.object.reset();
-}
-
-void object_instance(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
-  const auto name = read_string(reader, tokens, directive, source);
-  if (!name) return;
-  if (reader.object) return reader.messages.error(source, "ObjectInstance inside ObjectBegin");
-  reader.instances.push_back({*name, reader.state.transform, source});
-}
-
-void reverse_orientation(Reader& reader, Tokenizer&, std::string_view, Source) {
-  reader.state.reverse_orientation = !reader.state.reverse_orientation;
-}
-
-void world_begin(Reader& reader, Tokenizer&, std::string_view, Source source) {
-  default_camera(reader, source);
-  reader.in_world = true;
-  reader.state.transform = glm::dmat4(1.0);
-  reader.state.start_time_active = true;
-  reader.coordinate_systems["world"] = reader.state.transform;
-}
-
-void world_end(Reader& reader, Tokenizer&, std::string_view, Source source) {
-  reader.messages.warning_once("WorldEnd", source, "WorldEnd is of pbrt-v3 and means nothing any more");
-}
-
-void include(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
-  const auto name = read_string(reader, tokens, directive, source);
-  if (name) read_scene_file(reader, reader.resolve(*name), source);
-}
-
-// As Include, but what the file does to the graphics state ends with it.
-void import(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
-  const auto name = read_string(reader, tokens, directive, source);
-  if (!name) return;
-  const size_t depth = reader.stack.size();
-  push(reader, Block::import, source);
-  read_scene_file(reader, reader.resolve(*name), source);
-  while (reader.stack.size() > depth + 1) {
-    reader.messages.error(reader.stack.back().source, "this block is not closed at the end of the imported file");
-    if (reader.stack.back().block == Block::object) reader.object.reset();
-    reader.stack.pop_back();
-  }
-  pop(reader, Block::import, directive, "Import", source);
 }
 
 constexpr auto directives = std::to_array<Directive>({
@@ -317,10 +229,12 @@ void read_directive(Reader& reader, Tokenizer& tokens) {
 }  // namespace
 
 void read_directives(Reader& reader, Tokenizer& tokens) {
-  const Diagnostics& diagnostics = reader.messages.diagnostics;
   while (tokens.peek().kind != TokenKind::end) {
-    if (diagnostics.all().size() > most_mistakes) return;
+    if (reader.gave_up) return;
     read_directive(reader, tokens);
+    if (reader.messages.diagnostics.error_count() < most_mistakes || reader.gave_up) continue;
+    reader.gave_up = true;
+    reader.messages.error({reader.file, tokens.peek().line}, "too many mistakes; the rest is not read");
   }
 }
 

@@ -2,9 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 
+#include "scenes/images/read_image.h"
 #include "scenes/pbrt/matrix.h"
 #include "scenes/pbrt/reader.h"
 
@@ -12,6 +15,8 @@ namespace metamer::pbrt {
 namespace {
 
 constexpr std::string_view light_kinds[] = {"point", "distant", "infinite", "spot", "goniometric", "projection"};
+
+constexpr double least_luminance = 1e-30;  // what single precision can still divide by
 
 struct LightSpectrum {
   SpectrumId id = zero_spectrum;
@@ -31,7 +36,7 @@ LightSpectrum read_light_spectrum(Reader& reader, Parameters& parameters, std::s
   LightSpectrum light{value ? value->id : spectra.add_white(space), parameters.number_from("scale", 1, 0)};
   // rgb values count against the white alone: their own luminance is part of what they say.
   const double luminance = value && !value->rgb ? spectra.luminance(value->id) : white_luminance(reader, space);
-  if (luminance > 0) {
+  if (luminance > least_luminance) {
     light.scale /= luminance;
   } else {
     parameters.error(name, fmt::format("'{}' has no luminance, by which pbrt divides it", name));
@@ -45,7 +50,9 @@ double target_factor(Parameters& parameters, std::string_view name, double per_u
   return target > 0 ? target / per_unit_scale : 1;
 }
 
-void add_light(Reader& reader, Parameters& parameters, const Light& light, const glm::dmat4& transform) {
+void add_light(Reader& reader, Parameters& parameters, LightKind kind, SpectrumId spectrum, double scale,
+               const glm::dmat4& transform, ImageId image = no_index) {
+  const Light light{kind, spectrum, to_light_scale(parameters, scale), 0, image};
   Registry& registry = reader.scene.registry;
   const Entity entity = registry.create();
   registry.set(entity, to_component(transform));
@@ -57,8 +64,7 @@ void read_point(Reader& reader, Parameters& parameters) {
   const LightSpectrum spectrum = read_light_spectrum(reader, parameters, "I");
   const double scale = spectrum.scale * target_factor(parameters, "power", 4 * std::numbers::pi);
   const glm::dvec3 from = parameters.point3("from", glm::dvec3(0));
-  add_light(reader, parameters, {LightKind::point, spectrum.id, static_cast<float>(scale), 0, no_index},
-            reader.state.transform * translation(from));
+  add_light(reader, parameters, LightKind::point, spectrum.id, scale, reader.state.transform * translation(from));
 }
 
 void read_distant(Reader& reader, Parameters& parameters) {
@@ -66,20 +72,66 @@ void read_distant(Reader& reader, Parameters& parameters) {
   const double scale = spectrum.scale * target_factor(parameters, "illuminance", 1);
   const glm::dvec3 backward = parameters.point3("from", glm::dvec3(0)) - parameters.point3("to", glm::dvec3(0, 0, 1));
   if (!(glm::length(backward) > 0)) return parameters.error("to", "'from' and 'to' coincide");
-  add_light(reader, parameters, {LightKind::directional, spectrum.id, static_cast<float>(scale), 0, no_index},
+  add_light(reader, parameters, LightKind::directional, spectrum.id, scale,
             reader.state.transform * frame_of_z(glm::normalize(backward)));
+}
+
+// What pbrt-v4 takes as the illuminance of an equal-area image of luminance 1 per unit: the sum over the upper
+// hemisphere of Y cos theta times 2 pi over the number of pixels (half of the true figure, but so it is there).
+double image_illuminance(const Image& image) {
+  const Matrix3& to_xyz = rgb_to_xyz(image.color_space);
+  double sum = 0;
+  for (uint32_t y = 0; y < image.height; ++y) {
+    for (uint32_t x = 0; x < image.width; ++x) {
+      // Clarberg 2008: z of the direction through the pixel's centre, from its distance to the inner square's edge.
+      const double u = std::abs(2 * (x + 0.5) / image.width - 1), v = std::abs(2 * (y + 0.5) / image.height - 1);
+      const double z = 1 - (u + v) * (u + v);
+      if (u + v >= 1) continue;
+      const float* rgb = &image.rgb[3 * (size_t{y} * image.width + x)];
+      for (size_t c = 0; c < 3; ++c) sum += to_xyz[1][c] * static_cast<double>(rgb[c]) * z;
+    }
+  }
+  return sum * 2 * std::numbers::pi / (static_cast<double>(image.width) * image.height);
+}
+
+void read_environment_image(Reader& reader, Parameters& parameters, const std::string& filename) {
+  const double scale = parameters.number_from("scale", 1, 0);
+  const double illuminance = parameters.number("illuminance", -1);
+  if (parameters.has("L")) parameters.error("L", "'L' and 'filename' exclude each other");
+  Image image;
+  if (!read_image(reader.resolve(filename), reader.messages.at(parameters.source()), image,
+                  reader.messages.diagnostics))
+    return;
+  image.mapping = ImageMapping::equal_area;
+  if (image.width != image.height) {
+    return parameters.error("filename", fmt::format("'{}' has {} x {} pixels; pbrt's equal-area images are square",
+                                                    filename, image.width, image.height));
+  }
+  const double measured = illuminance > 0 ? image_illuminance(image) : 1;
+  if (!(measured > 0)) return parameters.error("illuminance", "the image is black above the horizon");
+  const double target = illuminance > 0 ? illuminance / measured : 1;
+  const auto id = static_cast<ImageId>(reader.scene.images.size());
+  add_light(reader, parameters, LightKind::environment, reader.scene.spectra.add_white(image.color_space),
+            scale * target / white_luminance(reader, image.color_space), reader.state.transform, id);
+  reader.scene.images.push_back(std::move(image));
 }
 
 void read_infinite(Reader& reader, Parameters& parameters) {
   parameters.unsupported("portal", "the light is not restricted to it");
-  parameters.unsupported("filename", "the light is even");
+  const std::string filename = parameters.string("filename", "");
+  if (!filename.empty()) return read_environment_image(reader, parameters, filename);
   const LightSpectrum spectrum = read_light_spectrum(reader, parameters, "L");
   const double scale = spectrum.scale * target_factor(parameters, "illuminance", std::numbers::pi);
-  add_light(reader, parameters, {LightKind::environment, spectrum.id, static_cast<float>(scale), 0, no_index},
-            reader.state.transform);
+  add_light(reader, parameters, LightKind::environment, spectrum.id, scale, reader.state.transform);
 }
 
 }  // namespace
+
+float to_light_scale(Parameters& parameters, double scale) {
+  if (scale <= static_cast<double>(std::numeric_limits<float>::max())) return static_cast<float>(scale);
+  parameters.error("scale", fmt::format("the light is scaled by {:g}, which is too large", scale));
+  return 0;
+}
 
 void read_light(Reader& reader, std::string_view kind, Parameters& parameters) {
   if (kind == "point") return read_point(reader, parameters);

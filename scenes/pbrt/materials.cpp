@@ -19,9 +19,10 @@ constexpr std::string_view material_kinds[] = {
 void read_roughness(Reader& reader, Parameters& parameters, Material& material) {
   const double both = read_real_or_texture(reader, parameters, "roughness", 0);
   const bool remap = parameters.boolean("remaproughness", true);
+  if (both < 0) parameters.error("roughness", "roughness must not be negative");
   const auto alpha = [&](std::string_view name) {
     const double roughness = read_real_or_texture(reader, parameters, name, both);
-    if (roughness < 0) parameters.error(parameters.has(name) ? name : "roughness", "roughness must not be negative");
+    if (roughness < 0 && parameters.has(name)) parameters.error(name, "roughness must not be negative");
     return static_cast<float>(remap ? std::sqrt(std::max(roughness, 0.0)) : std::max(roughness, 0.0));
   };
   material.alpha_x = alpha("uroughness");

@@ -53,7 +53,9 @@ std::optional<glm::dmat4> look_at(glm::dvec3 eye, glm::dvec3 target, glm::dvec3 
 
 glm::dmat4 from_columns(std::span<const double> numbers) {
   glm::dmat4 m;
-  for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = numbers[static_cast<size_t>(i)];
+  // Homogeneous: all may be multiples of the last.
+  const double w = numbers[15] != 0 ? numbers[15] : 1;
+  for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = numbers[static_cast<size_t>(i)] / w;
   return m;
 }
 

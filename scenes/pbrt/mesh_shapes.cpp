@@ -164,7 +164,7 @@ std::optional<ReadMesh> read_ply_mesh(Reader& reader, Parameters& parameters) {
   parameters.unsupported("displacement", "the surface stays as it is");
   parameters.number("edgelength", 1);
   if (name.empty()) {
-    parameters.error("filename", "'filename' is missing");
+    if (!parameters.has("filename")) parameters.error("filename", "'filename' is missing");
     return std::nullopt;
   }
   const std::string path = reader.resolve(name);

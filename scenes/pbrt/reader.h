@@ -78,7 +78,7 @@ struct Reader {
   std::map<std::string, glm::dmat4> coordinate_systems = {};
   std::map<std::string, NamedMaterial> materials = {};
   std::vector<Entity> interface_materials = {};
-  std::set<std::string> textures = {}, media = {};
+  std::set<std::string> spectrum_textures = {}, float_textures = {};
   std::map<std::string, std::vector<ShapeRecord>> objects = {};
   std::optional<std::string> object = {};  // between ObjectBegin and ObjectEnd
   std::vector<Instance> instances = {};
@@ -88,6 +88,7 @@ struct Reader {
 
   std::vector<std::filesystem::path> open_files = {};
   size_t files_read = 0;
+  bool gave_up = false;  // too many mistakes
 
   const ParameterList& attributes(AttributeTarget target) const {
     return state.attributes[static_cast<size_t>(target)];
@@ -128,6 +129,8 @@ Entity read_material(Reader& reader, std::string_view kind, Parameters& paramete
 
 // lights.cpp
 void read_light(Reader& reader, std::string_view kind, Parameters& parameters);
+// A light's scale in single precision; an error, and 0, if that overflows.
+float to_light_scale(Parameters& parameters, double scale);
 AreaLight read_area_light(Reader& reader, std::string_view kind, Parameters& parameters);
 
 // shapes.cpp

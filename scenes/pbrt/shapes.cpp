@@ -116,7 +116,8 @@ Light to_light(Parameters& parameters, const AreaLight& area_light, double area)
     parameters.messages().warning(parameters.source(),
                                   "a light without area cannot emit the 'power' of its AreaLightSource");
   }
-  return {LightKind::area, area_light.spectrum, static_cast<float>(scale), area_light.two_sided ? 1u : 0u, no_index};
+  return {LightKind::area, area_light.spectrum, to_light_scale(parameters, scale), area_light.two_sided ? 1u : 0u,
+          no_index};
 }
 
 }  // namespace

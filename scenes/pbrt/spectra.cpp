@@ -135,10 +135,11 @@ struct SpectrumReader {
   }
 };
 
-void report_texture(Reader& reader, Parameters& parameters, const Parameter& parameter) {
+void report_texture(Reader& reader, Parameters& parameters, const Parameter& parameter,
+                    const std::set<std::string>& textures) {
   const std::string name = parameter.strings.size() == 1 ? parameter.strings[0] : "";
-  if (!reader.textures.contains(name)) {
-    const std::vector<std::string_view> known(reader.textures.begin(), reader.textures.end());
+  if (!textures.contains(name)) {
+    const std::vector<std::string_view> known(textures.begin(), textures.end());
     reader.messages.error(parameter.source, fmt::format("{}: there is no texture '{}'{}", parameters.what(), name,
                                                         did_you_mean(name, known)));
     return;
@@ -158,7 +159,7 @@ std::optional<SpectrumValue> read_spectrum(Reader& reader, Parameters& parameter
   const Parameter* parameter = parameters.find(name, std::span(types).first(count));
   if (parameter == nullptr) return std::nullopt;
   if (parameter->type == ParameterType::texture) {
-    report_texture(reader, parameters, *parameter);
+    report_texture(reader, parameters, *parameter, reader.spectrum_textures);
     return std::nullopt;
   }
   return SpectrumReader{reader, parameters, *parameter, kind}.read();
@@ -169,7 +170,7 @@ double read_real_or_texture(Reader& reader, Parameters& parameters, std::string_
   const Parameter* parameter = parameters.find(name, types);
   if (parameter == nullptr) return fallback;
   if (parameter->type == ParameterType::texture) {
-    report_texture(reader, parameters, *parameter);
+    report_texture(reader, parameters, *parameter, reader.float_textures);
     return fallback;
   }
   return parameters.number(name, fallback);

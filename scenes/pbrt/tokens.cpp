@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <utility>
@@ -115,7 +116,10 @@ Token Tokenizer::scan_string() {
 }
 
 bool looks_like_directive(const Token& token) {
-  return token.kind == TokenKind::word && token.text[0] >= 'A' && token.text[0] <= 'Z';
+  if (token.kind != TokenKind::word || token.text[0] < 'A' || token.text[0] > 'Z') return false;
+  // Values as other programs write them.
+  constexpr std::string_view values[] = {"True", "TRUE", "False", "FALSE", "NaN", "NAN", "Inf", "INF", "Infinity"};
+  return std::find(std::begin(values), std::end(values), token.text) == std::end(values);
 }
 
 std::string show(const Token& token) {

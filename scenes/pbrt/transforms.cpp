@@ -4,8 +4,8 @@
 #include <array>
 #include <glm/matrix.hpp>
 
+#include "scenes/pbrt/directives.h"
 #include "scenes/pbrt/matrix.h"
-#include "scenes/pbrt/reader.h"
 
 namespace metamer::pbrt {
 namespace {
@@ -34,12 +34,6 @@ std::optional<std::vector<double>> read_numbers(Reader& reader, Tokenizer& token
   reader.messages.error({source.file, token.line},
                         fmt::format("{} expects {} numbers{}, but after {} comes {}", directive, count,
                                     bracket ? " and ']'" : "", numbers.size(), show(token)));
-  return std::nullopt;
-}
-
-std::optional<std::string> read_name(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
-  if (tokens.peek().kind == TokenKind::string) return std::string(tokens.next().text);
-  reader.messages.error(source, fmt::format("{} expects a quoted name, not {}", directive, show(tokens.peek())));
   return std::nullopt;
 }
 
@@ -125,10 +119,10 @@ bool read_transform_directive(Reader& reader, Tokenizer& tokens, std::string_vie
   } else if (directive == "ActiveTransform") {
     active_transform(reader, tokens, source);
   } else if (directive == "CoordinateSystem") {
-    if (const auto name = read_name(reader, tokens, directive, source))
+    if (const auto name = read_string(reader, tokens, directive, source))
       reader.coordinate_systems[*name] = reader.state.transform;
   } else if (directive == "CoordSysTransform") {
-    if (const auto name = read_name(reader, tokens, directive, source))
+    if (const auto name = read_string(reader, tokens, directive, source))
       coordinate_system_transform(reader, *name, source);
   } else {
     return false;

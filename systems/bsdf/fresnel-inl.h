@@ -39,12 +39,12 @@ HWY_INLINE VF schlick_curve(VF f0, VF cos_theta) {
 }  // namespace bsdf_detail
 
 // The reflected direction R = v + 2 N cos(alpha), cos(alpha) = -v.N; v points towards the surface, N is a unit normal
-// on either side. DESIGN.md, section 1. Largest error against double: 1e-6 in each coordinate.
+// on either side. DESIGN.md, section 1.
 HWY_INLINE Vec3 reflect(const Vec3& v, const Vec3& n) { return mul_add(n, hn::Mul(splat(-2.0f), dot(v, n)), v); }
 
 // The refracted direction T = v / eta + N (cos(alpha) / eta - cos_theta_t); v points towards the surface, N against v,
 // inv_eta = 1 / eta, and cos_theta_t comes from a DielectricBoundary. Meaningless in total internal reflection.
-// DESIGN.md, section 1. Largest error against double: 5e-6 in each coordinate while cos_theta_t > 1e-2.
+// DESIGN.md, section 1.
 HWY_INLINE Vec3 refract(const Vec3& v, const Vec3& n, VF inv_eta, VF cos_theta_t) {
   const VF cos_alpha = hn::Neg(dot(v, n));
   return mul_add(n, hn::MulSub(cos_alpha, inv_eta, cos_theta_t), v * inv_eta);
@@ -54,7 +54,7 @@ HWY_INLINE Vec3 refract(const Vec3& v, const Vec3& n, VF inv_eta, VF cos_theta_t
 // s = sin(theta_i), g = eta cos(theta_t): r_s = (1 - eta^2) / (c + g)^2 and r_p / r_s = (c g - s^2) / (c g + s^2) (Born
 // & Wolf, Principles of Optics, section 1.5.2, in sums without cancellation), so that (r_s^2 + r_p^2) / 2 = r_s^2 (c^2
 // g^2 + s^4) / (c g + s^2)^2. Grazing incidence gives 1 unless eta = 1, which gives 0. Largest error against double:
-// 2e-5 while |g^2| > 1e-3; nearer to the critical angle, where the slope is infinite, 8e-3. Tested for eta in [1/3, 3].
+// 1e-5 while |g^2| > 1e-3; nearer to the critical angle, where the slope is infinite, 8e-3. Tested for eta in [1/3, 3].
 HWY_INLINE DielectricBoundary fresnel_dielectric(VF eta, VF inv_eta, VF cos_theta_i) {
   const FloatTag d;
   const VF one = splat(1.0f);

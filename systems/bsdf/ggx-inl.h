@@ -90,7 +90,7 @@ HWY_INLINE void conductor_reflectance(const ConductorOptics& optics, VF cos_thet
 }
 
 // f_cos = f |cos(theta_i)| and the pdf with which sample_conductor draws wi; 0 where wi is on the other side, and for
-// smooth lobes. Largest relative errors against double: f_cos 2e-5, pdf 4e-6.
+// smooth lobes. Largest relative error against double: 2e-5 (without Fresnel's, 2e-6).
 HWY_INLINE void eval_conductor(const GgxLobe& lobe, const ConductorOptics& optics, const Vec3& wi, VF f_cos[4],
                                VF& pdf) {
   const VF zero = hn::Zero(FloatTag());

@@ -176,14 +176,6 @@ TEST(SpectrumSet, AlbedosStayWithinZeroAndOneAndUnboundedReturnTheirColour) {
   for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(rgb[c], copper[c], 1e-6);
 }
 
-TEST(SpectrumSet, ColoursThatNoReflectanceHasAreReported) {
-  SpectrumSet set;
-  EXPECT_LT(set.add_rgb({0.1, 1.0, 0.0}, RgbKind::albedo).color_error, 1e-6);
-  const SpectrumResult impossible = set.add_rgb({0.0, 1.0, 0.0}, RgbKind::albedo, ColorSpace::rec2020);
-  EXPECT_TRUE(impossible.ok());
-  EXPECT_GT(impossible.color_error, 1e-3);
-}
-
 // DESIGN.md, section 1: X = 683 times the integral of L xbar, and EXR R = G = B = 1 is white of 1 cd/m^2. pbrt-v4
 // divides an rgb light by 683 times the integral of the white illuminant's Y.
 TEST(SpectrumSet, RgbLightsDevelopToTheirRgb) {

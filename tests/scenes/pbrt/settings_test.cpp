@@ -1,0 +1,126 @@
+#include "tests/scenes/pbrt/read_text.h"
+
+namespace metamer {
+namespace {
+
+ReadScene read_settings(const std::string& text) { return read_text(text + "\nWorldBegin\n"); }
+
+RenderSettings settings(const std::string& text) {
+  const ReadScene read = read_settings("Camera \"perspective\"\n" + text);
+  EXPECT_TRUE(read.ok) << text << "\n" << format_diagnostics(read.diagnostics);
+  return read.scene.settings;
+}
+Camera camera(const std::string& text) {
+  const ReadScene read = read_settings("Camera " + text);
+  EXPECT_TRUE(read.ok) << text << "\n" << format_diagnostics(read.diagnostics);
+  return read.get<Camera>();
+}
+
+TEST(PbrtSettings, DefaultsArePbrts) {
+  const RenderSettings s = settings("");
+  EXPECT_EQ(s.width, 1280u);
+  EXPECT_EQ(s.height, 720u);
+  EXPECT_EQ(s.samples_per_pixel, 16u);
+  EXPECT_EQ(s.max_depth, 5u);
+  EXPECT_EQ(s.filter.kind, FilterKind::gaussian);
+  EXPECT_EQ(s.filter.radius_x, 1.5f);
+  EXPECT_EQ(s.filter.sigma, 0.5f);
+  EXPECT_EQ(s.sensor_scale, 1.0f);
+  const Camera c = camera("\"perspective\"");
+  EXPECT_EQ(c.fov_deg, 90.0f);
+  EXPECT_EQ(c.lens_radius, 0.0f);
+  EXPECT_EQ(c.focal_distance, 1e6f);
+  EXPECT_EQ(c.screen_window, glm::vec4(0));
+}
+
+TEST(PbrtSettings, CamerasHaveFovLensAndScreenWindow) {
+  const Camera c = camera("\"perspective\" \"float fov\" 30 \"float lensradius\" [.25] \"float focaldistance\" 4");
+  EXPECT_EQ(c.kind, CameraKind::perspective);
+  EXPECT_EQ(c.fov_deg, 30.0f);
+  EXPECT_EQ(c.lens_radius, 0.25f);
+  EXPECT_EQ(c.focal_distance, 4.0f);
+  EXPECT_EQ(camera("\"perspective\" \"float screenwindow\" [-1 2 -3 4]").screen_window, glm::vec4(-1, 2, -3, 4));
+  EXPECT_EQ(camera("\"perspective\" \"float frameaspectratio\" 2").screen_window, glm::vec4(-2, 2, -1, 1));
+  EXPECT_EQ(camera("\"perspective\" \"float frameaspectratio\" .5").screen_window, glm::vec4(-1, 1, -2, 2));
+  const Camera o = camera("\"orthographic\" \"float screenwindow\" [-3 3 -2 2]");
+  EXPECT_EQ(o.kind, CameraKind::orthographic);
+  EXPECT_EQ(o.screen_height, 2.0f) << "so that a unit of the window is a metre";
+  EXPECT_EQ(o.screen_window, glm::vec4(-3, 3, -2, 2));
+}
+
+TEST(PbrtSettings, ExposureIsTheShuttersTimeTimesIsoOverAHundred) {
+  const ReadScene read = read_settings(
+      "Film \"rgb\" \"float iso\" 400\nCamera \"perspective\" \"float shutteropen\" 1 \"float shutterclose\" 1.5");
+  EXPECT_FLOAT_EQ(read.scene.settings.sensor_scale, 2.0f);
+}
+
+TEST(PbrtSettings, FilmSamplerIntegratorAndSeed) {
+  const RenderSettings s = settings(
+      "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" [48]\n"
+      "Sampler \"stratified\" \"integer xsamples\" 3 \"integer ysamples\" 5 \"bool jitter\" false\n"
+      "Integrator \"volpath\" \"integer maxdepth\" 7 \"string lightsampler\" \"power\"\n"
+      "Option \"seed\" 12");
+  EXPECT_EQ(s.width, 64u);
+  EXPECT_EQ(s.height, 48u);
+  EXPECT_EQ(s.samples_per_pixel, 15u);
+  EXPECT_EQ(s.max_depth, 7u);
+  EXPECT_EQ(s.seed, 12u);
+  EXPECT_EQ(settings("Sampler \"halton\" \"integer pixelsamples\" 9 \"integer seed\" 3").samples_per_pixel, 9u);
+  EXPECT_EQ(settings("Sampler \"halton\" \"integer seed\" 3").seed, 3u);
+}
+
+TEST(PbrtSettings, FiltersHaveTheirOwnDefaults) {
+  EXPECT_EQ(settings("PixelFilter \"box\"").filter.radius_x, 0.5f);
+  const Filter triangle = settings("PixelFilter \"triangle\" \"float yradius\" 3").filter;
+  EXPECT_EQ(triangle.kind, FilterKind::triangle);
+  EXPECT_EQ(triangle.radius_x, 2.0f);
+  EXPECT_EQ(triangle.radius_y, 3.0f);
+  const Filter gaussian = settings("PixelFilter \"gaussian\" \"float xradius\" 2 \"float sigma\" .7").filter;
+  EXPECT_EQ(gaussian.radius_x, 2.0f);
+  EXPECT_EQ(gaussian.radius_y, 1.5f);
+  EXPECT_EQ(gaussian.sigma, 0.7f);
+}
+
+TEST(PbrtSettings, WhatIsUsedInsteadIsSaid) {
+  const ReadScene read = read_settings(R"(Camera "spherical" "string mapping" "equalarea"
+Film "spectral" "integer nbuckets" 9 "integer xresolution" 12
+PixelFilter "mitchell" "float B" 0.3
+Sampler "zsobol" "string randomization" "none"
+Integrator "bdpt" "integer maxdepth" 3
+Accelerator "bvh" "string splitmethod" "sah"
+Option "disablepixeljitter" true
+MakeNamedMedium "fog" "string type" "homogeneous"
+MediumInterface "fog" ""
+ColorSpace "rec2020"
+Film "rgb" "float cropwindow" [0 1 0 1] "string sensor" "canon_eos_5d" "string filename" "x.exr" "float diagonal" 20)");
+  EXPECT_TRUE(read.ok);
+  EXPECT_THAT(
+      read.messages,
+      testing::ElementsAre(
+          "scene:1: warning: Camera \"spherical\" is not supported yet; a perspective camera of 90 degrees is used",
+          "scene:2: warning: Film \"spectral\" is not supported yet; its size and exposure are used, it records R G B",
+          "scene:3: warning: PixelFilter \"mitchell\" is not supported yet; gaussian of radius 1.5 and sigma 0.5 "
+          "pixels is used",
+          "scene:4: note: Sampler \"zsobol\": its sample count is used; the points are always Owen-scrambled Sobol "
+          "points",
+          "scene:5: warning: Integrator \"bdpt\" is not supported yet; path tracing is used",
+          "scene:6: note: Accelerator \"bvh\": Embree's is always used",
+          "scene:7: warning: Option \"disablepixeljitter\" is not supported; it changes nothing",
+          "scene:8: warning: media are not supported yet; space is empty",
+          "scene:11: warning: Film \"rgb\": 'sensor' is not supported yet; cie1931 is used",
+          "scene:11: note: Film's 'filename' is not used: outputs are named after the scene, or by -o",
+          "scene:11: warning: Film \"rgb\": 'cropwindow' is not supported yet; the whole picture is rendered",
+          "scene:11: warning: pictures in the colour space 'rec2020' are not supported yet; sRGB's primaries are "
+          "used"));
+  EXPECT_EQ(read.scene.settings.max_depth, 3u);
+}
+
+TEST(PbrtSettings, WithoutACameraThereIsPbrtsDefaultOne) {
+  const ReadScene read = read_text("\nWorldBegin");
+  EXPECT_THAT(read.messages,
+              testing::ElementsAre("scene:2: warning: there is no Camera; a perspective one of 90 degrees is used"));
+  EXPECT_EQ(read.get<Camera>().fov_deg, 90.0f);
+}
+
+}  // namespace
+}  // namespace metamer

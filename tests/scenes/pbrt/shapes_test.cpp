@@ -1,0 +1,98 @@
+#include "tests/scenes/pbrt/read_text.h"
+
+namespace metamer {
+namespace {
+
+ReadScene read_good(const std::string& world) {
+  ReadScene read = read_world(world);
+  EXPECT_TRUE(read.ok) << world << "\n" << format_diagnostics(read.diagnostics);
+  return read;
+}
+
+TEST(PbrtShapes, SpheresAndDisksMayStateTheirFullParameters) {
+  const ReadScene read = read_good(R"(Shape "sphere" "float radius" 2 "float zmin" -2 "float zmax" 2 "float phimax" 360
+Shape "disk" "float height" 3 "float radius" 2 "float innerradius" 1 "float phimax" 360
+Shape "disk")");
+  ASSERT_EQ(read.count<Geometry>(), 3u);
+  EXPECT_EQ(read.get<Geometry>(0).kind, ShapeKind::sphere);
+  EXPECT_EQ(read.get<Geometry>(0).radius, 2.0f);
+  EXPECT_EQ(read.get<Geometry>(1).kind, ShapeKind::disk);
+  EXPECT_EQ(read.get<Geometry>(1).height, 3.0f);
+  EXPECT_EQ(read.get<Geometry>(1).inner_radius, 1.0f);
+  EXPECT_EQ(read.get<Geometry>(2).radius, 1.0f);
+  EXPECT_EQ(read.get<Geometry>(2).height, 0.0f);
+}
+
+TEST(PbrtShapes, ATriangleMeshHasPositionsNormalsUvsAndIndices) {
+  const ReadScene read =
+      read_good(R"(Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 1 1 0 0 1 0] "integer indices" [0 1 2 0 2 3]
+"normal N" [0 0 1 0 0 1 0 0 1 0 0 1] "point2 uv" [0 0 1 0 1 1 0 1] "vector3 S" [1 0 0 1 0 0 1 0 0 1 0 0] "integer faceIndices" [0 0])");
+  const Mesh& mesh = read.scene.meshes[read.get<Geometry>().mesh];
+  EXPECT_EQ(mesh.positions.size(), 4u);
+  EXPECT_EQ(mesh.positions[2], glm::vec3(1, 1, 0));
+  EXPECT_EQ(mesh.normals[3], glm::vec3(0, 0, 1));
+  EXPECT_EQ(mesh.uvs[2], glm::vec2(1, 1));
+  EXPECT_EQ(std::vector<uint32_t>(mesh.indices.begin(), mesh.indices.end()), (std::vector<uint32_t>{0, 1, 2, 0, 2, 3}));
+}
+
+TEST(PbrtShapes, ASingleTriangleNeedsNoIndices) {
+  const ReadScene read = read_good("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0]");
+  EXPECT_EQ(read.scene.meshes[0].indices.size(), 3u);
+}
+
+TEST(PbrtShapes, PlyFilesAreFoundBesideTheSceneAndReadOnce) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "models");
+  folder.write("models/t.ply",
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+               "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const std::string shape = "Shape \"plymesh\" \"string filename\" \"models/t.ply\"\n";
+  const ReadScene read = read_scene_at(folder.write("scene", "Camera \"perspective\" WorldBegin\n" + shape + shape));
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  EXPECT_EQ(read.count<Geometry>(), 2u);
+  ASSERT_EQ(read.scene.meshes.size(), 1u);
+  EXPECT_EQ(read.scene.meshes[0].positions[1], glm::vec3(1, 0, 0));
+}
+
+TEST(PbrtShapes, AFlatPatchIsTwoTrianglesFacingDpduTimesDpdv) {
+  const ReadScene read = read_good("Shape \"bilinearmesh\" \"point3 P\" [0 0 0 2 0 0 0 1 0 2 1 0]");
+  const Mesh& mesh = read.scene.meshes[0];
+  ASSERT_EQ(mesh.indices.size(), 6u);
+  float area = 0;
+  for (size_t i = 0; i < 6; i += 3) {
+    const glm::vec3 a = mesh.positions[mesh.indices[i + 1]] - mesh.positions[mesh.indices[i]];
+    const glm::vec3 b = mesh.positions[mesh.indices[i + 2]] - mesh.positions[mesh.indices[i]];
+    EXPECT_GT(a.x * b.y - a.y * b.x, 0.0f) << "u is x, v is y: the normal is +z";
+    area += 0.5f * (a.x * b.y - a.y * b.x);
+  }
+  EXPECT_FLOAT_EQ(area, 2.0f);
+  EXPECT_TRUE(read.messages.empty());
+}
+
+TEST(PbrtShapes, ACurvedPatchIsCutFinely) {
+  const ReadScene read = read_good("Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1]");
+  const Mesh& mesh = read.scene.meshes[0];
+  EXPECT_EQ(mesh.indices.size(), 16u * 16u * 6u);
+  for (const glm::vec3& p : mesh.positions) EXPECT_NEAR(p.z, p.x * p.y, 1e-6f);
+  EXPECT_THAT(read.messages,
+              testing::ElementsAre(
+                  "scene:2: note: Shape \"bilinearmesh\": curved patches are rendered as 16 x 16 flat pieces"));
+}
+
+TEST(PbrtShapes, WhatReplacesTheUnsupportedIsSaid) {
+  const ReadScene read = read_good(R"(Shape "cylinder" "float radius" 2 "float zmax" 3
+Shape "cylinder"
+Shape "curve" "point3 P" [0 0 0 1 1 1 2 2 2 3 3 3]
+Shape "loopsubdiv" "integer levels" 2 "point3 P" [0 0 0 1 0 0 1 1 0] "integer indices" [0 1 2]
+Shape "sphere" "float alpha" 0.5)");
+  EXPECT_EQ(read.count<Geometry>(), 2u);
+  EXPECT_THAT(
+      read.messages,
+      testing::ElementsAre("scene:2: warning: shape \"cylinder\" is not supported yet; it is left out",
+                           "scene:4: warning: shape \"curve\" is not supported yet; it is left out",
+                           "scene:5: warning: Shape \"loopsubdiv\" is not supported yet; its control mesh is rendered",
+                           "scene:6: warning: Shape \"sphere\": 'alpha' is not supported yet; the shape is opaque"));
+}
+
+}  // namespace
+}  // namespace metamer
