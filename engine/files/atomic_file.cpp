@@ -46,9 +46,7 @@ std::string folder_of(const std::string& path) {
   return slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
 }
 
-std::string reason(int error) {
-  return std::strerror(error);
-}
+std::string reason(int error) { return std::strerror(error); }
 
 // The file that a symbolic link names, where it names one; else the path itself.
 std::string follow_links(const std::string& path) {
@@ -85,9 +83,7 @@ FileError check_folder(const std::string& path, const std::string& resolved) {
 
 }  // namespace
 
-AtomicFile::~AtomicFile() {
-  discard();
-}
+AtomicFile::~AtomicFile() { discard(); }
 
 FileError AtomicFile::open(const std::string& target) {
   discard();

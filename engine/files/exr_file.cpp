@@ -45,9 +45,7 @@ class ExrStream : public Imf::OStream {
   AtomicFile& file_;
 };
 
-int clamped_int(uint64_t value) {
-  return static_cast<int>(std::min<uint64_t>(value, INT32_MAX));
-}
+int clamped_int(uint64_t value) { return static_cast<int>(std::min<uint64_t>(value, INT32_MAX)); }
 
 void describe(Imf::Header& exr, const FrameHeader& header) {
   const auto v2f = [](const std::array<float, 2>& xy) { return Imath::V2f(xy[0], xy[1]); };

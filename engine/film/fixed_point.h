@@ -34,8 +34,6 @@ inline FixedSum to_fixed(float value) {
 }
 
 // The nearest double, cd/m^2.
-inline double to_double(FixedSum sum) {
-  return static_cast<double>(sum) * 0x1p-64;
-}
+inline double to_double(FixedSum sum) { return static_cast<double>(sum) * 0x1p-64; }
 
 }  // namespace metamer

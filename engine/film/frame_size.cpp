@@ -33,9 +33,7 @@ uint64_t available_memory() {
   return available;
 }
 
-double gibibytes(uint64_t bytes) {
-  return static_cast<double>(bytes) * 0x1p-30;
-}
+double gibibytes(uint64_t bytes) { return static_cast<double>(bytes) * 0x1p-30; }
 
 }  // namespace
 
