@@ -57,6 +57,12 @@ int open_regular(const std::string& path, size_t& size, const F& fail) {
 
 }  // namespace
 
+FileBytes copy_bytes(std::string_view text) {
+  FileBytes bytes{std::make_unique_for_overwrite<char[]>(text.size()), text.size()};
+  std::copy(text.begin(), text.end(), bytes.data.get());
+  return bytes;
+}
+
 bool read_file(const std::string& path, const SourceLocation& named_at, FileBytes& bytes, Diagnostics& diagnostics) {
   const auto fail = [&](std::string_view why) {
     diagnostics.error(named_at, cannot_read(path, why));

@@ -14,6 +14,8 @@ struct FileBytes {
   std::string_view text() const { return {data.get(), size}; }
 };
 
+FileBytes copy_bytes(std::string_view text);
+
 // Reads a regular file. Where that fails (missing, a folder, a device, not readable), an error at `named_at`, the place
 // that asked for the file, and false.
 bool read_file(const std::string& path, const SourceLocation& named_at, FileBytes& bytes, Diagnostics& diagnostics);

@@ -22,7 +22,7 @@ bool read_scene(const std::string& path, Scene& scene, Diagnostics& diagnostics)
   if (extension == "pbrt") return read_pbrt(path, scene, diagnostics);
   FileBytes bytes;
   if (!read_file(path, {path, 0}, bytes, diagnostics)) return false;
-  if (looks_like_json(bytes.text())) return read_native(path, scene, diagnostics);
+  if (looks_like_json(bytes.text())) return read_native(path, std::move(bytes), scene, diagnostics);
   diagnostics.error({path, 0}, "unknown kind of scene; expected a file ending in .json or .pbrt");
   return false;
 }

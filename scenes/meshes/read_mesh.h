@@ -15,6 +15,9 @@ bool read_mesh(const std::string& path, const SourceLocation& named_at, Mesh& me
 // ones. Vertices: x y z, nx ny nz, and uv as u v, s t, texture_u texture_v or texture_s texture_t.
 bool read_ply(const std::string& path, const SourceLocation& named_at, Mesh& mesh, Diagnostics& diagnostics);
 
+// The same of a file that is in memory already.
+bool read_ply_text(std::string_view file, const std::string& path, Mesh& mesh, Diagnostics& diagnostics);
+
 // Wavefront OBJ through tinyobjloader: all shapes of the file merged, polygons triangulated, materials ignored.
 bool read_obj(const std::string& path, const SourceLocation& named_at, Mesh& mesh, Diagnostics& diagnostics);
 

@@ -270,17 +270,20 @@ bool check_elements(const Header& header, const std::string& path, Diagnostics& 
 
 bool read_ply(const std::string& path, const SourceLocation& named_at, Mesh& mesh, Diagnostics& diagnostics) {
   FileBytes bytes;
-  if (!read_file(path, named_at, bytes, diagnostics)) return false;
-  const std::optional<Header> header = parse_header(bytes.text(), path, diagnostics);
+  return read_file(path, named_at, bytes, diagnostics) && read_ply_text(bytes.text(), path, mesh, diagnostics);
+}
+
+bool read_ply_text(std::string_view file, const std::string& path, Mesh& mesh, Diagnostics& diagnostics) {
+  const std::optional<Header> header = parse_header(file, path, diagnostics);
   if (!header || !check_elements(*header, path, diagnostics)) return false;
   mesh = Mesh{};
   mesh.name = path;
   switch (header->format) {
-    case Format::ascii: return PlyReader<AsciiSource>(bytes.text(), *header, path, mesh, diagnostics).read();
+    case Format::ascii: return PlyReader<AsciiSource>(file, *header, path, mesh, diagnostics).read();
     case Format::binary_little_endian:
-      return PlyReader<BinarySource<std::endian::little>>(bytes.text(), *header, path, mesh, diagnostics).read();
+      return PlyReader<BinarySource<std::endian::little>>(file, *header, path, mesh, diagnostics).read();
     case Format::binary_big_endian:
-      return PlyReader<BinarySource<std::endian::big>>(bytes.text(), *header, path, mesh, diagnostics).read();
+      return PlyReader<BinarySource<std::endian::big>>(file, *header, path, mesh, diagnostics).read();
   }
   return false;
 }

@@ -64,9 +64,9 @@ size_t too_deep_at(std::string_view text) {
 
 }  // namespace
 
-bool JsonDocument::load(const std::string& path, const SourceLocation& named_at, Diagnostics& diagnostics) {
+bool JsonDocument::load(const std::string& path, FileBytes bytes, Diagnostics& diagnostics) {
   path_ = path;
-  if (!read_file(path, named_at, bytes_, diagnostics)) return false;
+  bytes_ = std::move(bytes);
   begin_ = bytes_.text().starts_with("\xef\xbb\xbf") ? 3 : 0;
   const std::string_view text = bytes_.text().substr(begin_);
   line_starts_ = {0};

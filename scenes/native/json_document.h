@@ -12,10 +12,10 @@ namespace metamer {
 
 class JsonDocument {
  public:
-  // Reads and parses; comments are allowed. A missing file is reported at `named_at`, mistakes of the syntax, repeated
-  // keys, numbers beyond double precision and nesting deeper than 100 with their lines. Then false, but where only keys
-  // and numbers were wrong `root` can still be read, so that its other mistakes are found too.
-  bool load(const std::string& path, const SourceLocation& named_at, Diagnostics& diagnostics);
+  // Parses the bytes of the file; comments are allowed. Mistakes of the syntax, repeated keys, numbers beyond double
+  // precision and nesting deeper than 100 are reported with their lines. Then false, but where only keys and numbers
+  // were wrong `root` can still be read, so that its other mistakes are found too.
+  bool load(const std::string& path, FileBytes bytes, Diagnostics& diagnostics);
 
   bool is_readable() const { return is_readable_; }
   const std::string& path() const { return path_; }

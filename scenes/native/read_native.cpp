@@ -30,9 +30,14 @@ void read_scene_object(SceneContext& context, const Json::Value& root) {
 }  // namespace
 
 bool read_native(const std::string& path, Scene& scene, Diagnostics& diagnostics) {
+  FileBytes bytes;
+  return read_file(path, {path, 0}, bytes, diagnostics) && read_native(path, std::move(bytes), scene, diagnostics);
+}
+
+bool read_native(const std::string& path, FileBytes bytes, Scene& scene, Diagnostics& diagnostics) {
   const size_t errors_before = diagnostics.error_count();
   JsonDocument document;
-  document.load(path, {path, 0}, diagnostics);
+  document.load(path, std::move(bytes), diagnostics);
   if (!document.is_readable()) return false;
   SceneContext context(document, scene, diagnostics);
   read_scene_object(context, document.root());
