@@ -132,7 +132,7 @@ Transform to_component(const glm::dmat4& m) {
 bool check_invertible(const SceneContext& context, const Json::Value& at, const glm::dmat4& m) {
   glm::dmat3 directions;
   for (int column = 0; column < 4; ++column) {
-    const glm::dvec3 v(glm::vec3(m[column]));
+    const glm::dvec3 v{glm::vec3(m[column])};
     if (!(std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) <= largest_float)) {
       context.reader.error(at, "the transform is beyond single precision");
       return false;
