@@ -45,7 +45,9 @@ bool check_pixels(const Image& image, Diagnostics& diagnostics) {
 
 bool read_image(const std::string& path, const SourceLocation& named_at, Image& image, Diagnostics& diagnostics) {
   if (!check_readable(path, named_at, diagnostics)) return false;
-  const auto input = OIIO::ImageInput::open(path);
+  OIIO::ImageSpec wishes;
+  wishes.attribute("oiio:UnassociatedAlpha", 1);  // colours as the file holds them, not multiplied by its alpha
+  const auto input = OIIO::ImageInput::open(path, &wishes);
   const auto fail = [&](const std::string& why) {
     diagnostics.error({path, 0}, fmt::format("cannot read this as an image: {}", why));
     return false;

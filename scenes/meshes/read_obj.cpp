@@ -185,6 +185,14 @@ uint32_t line_in(const std::string& message) {
   return at == std::string::npos ? 0 : static_cast<uint32_t>(std::strtoul(message.c_str() + at + 5, nullptr, 10));
 }
 
+// Comments blanked out: the loader takes one behind a face for another corner.
+std::string without_comments(std::string_view text) {
+  std::string result(text);
+  for (size_t at = 0; (at = result.find('#', at)) != std::string::npos;)
+    for (; at < result.size() && result[at] != '\n' && result[at] != '\r'; ++at) result[at] = ' ';
+  return result;
+}
+
 }  // namespace
 
 bool read_obj(const std::string& path, const SourceLocation& named_at, Mesh& mesh, Diagnostics& diagnostics) {
@@ -195,7 +203,7 @@ bool read_obj(const std::string& path, const SourceLocation& named_at, Mesh& mes
   config.triangulate = true;
   config.vertex_color = false;
   tinyobj::ObjReader reader;
-  if (!reader.ParseFromString(std::string(bytes.text()), "", config)) {
+  if (!reader.ParseFromString(without_comments(bytes.text()), "", config)) {
     diagnostics.error({path, line_in(reader.Error())}, "not a valid OBJ mesh: " + reader.Error());
     return false;
   }
