@@ -8,6 +8,7 @@
 
 #include "engine/diagnostics.h"
 #include "engine/ecs/components.h"
+#include "engine/sampling/filters.h"
 #include "engine/spectrum/spectrum_set.h"
 
 namespace metamer {
@@ -31,8 +32,6 @@ struct Image {
   ImageMapping mapping = ImageMapping::latitude_longitude;
   ColorSpace color_space = ColorSpace::srgb;
 };
-
-enum class FilterKind : uint32_t { box, triangle, gaussian };
 
 struct Filter {
   FilterKind kind = FilterKind::gaussian;

@@ -15,11 +15,11 @@
 #include <string>
 
 #include "engine/film/fixed_point.h"
+#include "engine/sampling/points.h"
 #include "engine/simd/column.h"
 
 namespace metamer {
 
-inline constexpr uint32_t replicate_count = 4;
 // At the sample limit so many samples sum to 2^126 quanta: no sum of a pixel can overflow.
 inline constexpr uint32_t max_samples_per_pixel = 1u << 22;
 

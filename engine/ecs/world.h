@@ -1,0 +1,118 @@
+// The frozen scene: flat, read-only columns for the systems. Made by systems/freeze from a Scene.
+#pragma once
+#include <memory>
+
+#include "engine/ecs/scene.h"
+#include "engine/sampling/distribution.h"
+#include "engine/simd/column.h"
+#include "engine/streams.h"
+
+namespace metamer {
+
+// Surfaces by object: a triangle mesh, or one quadric.
+struct ObjectColumns {
+  Column<uint32_t> kind;            // ShapeKind: mesh, sphere or disk (rectangles are meshes here)
+  Column<uint32_t> first_triangle;  // into World::triangle_vertices; unused by quadrics
+  Column<uint32_t> triangle_count;
+  Column<uint32_t> shade_kind;   // ShadeKind
+  Column<uint32_t> material;     // row in the table of that kind
+  Column<uint32_t> first_light;  // light row of the first triangle, or no_index
+  Column<uint32_t> placement;    // row in World::placements; 0 is the identity: vertices are in world space
+  Column<uint32_t> visibility;   // mask of rays that see it
+  Column<uint32_t> entity;       // index of the entity it came from
+  size_t size() const { return kind.size(); }
+};
+
+// Placed quadrics and instances: rows of an affine matrix and its inverse, and the shape's own numbers.
+struct Placement {
+  float to_world[12];   // row-major 3x4
+  float to_object[12];  // its inverse
+  float radius = 0, inner_radius = 0, height = 0;
+  float normal_sign = 1;  // -1: the outside is the other side
+  float padding[4] = {};
+};
+static_assert(sizeof(Placement) == 32 * sizeof(float));
+
+struct DiffuseColumns {
+  Column<uint32_t> reflectance;  // SpectrumId
+};
+struct ConductorColumns {
+  Column<uint32_t> eta, kappa;  // SpectrumId
+  Column<float> alpha_x, alpha_y;
+  Column<uint32_t> schlick;  // 1: Schlick's approximation
+};
+struct DielectricColumns {
+  Column<uint32_t> eta;  // SpectrumId; inside against outside
+  Column<uint32_t> schlick;
+  Column<uint32_t> dispersive;  // 1: eta differs between wavelengths
+};
+
+// A light that can be chosen: one triangle or quadric, a point, a direction, or the environment.
+enum class LightShape : uint32_t { triangle, sphere, ellipsoid, disk, point, directional, environment };
+struct LightRow {
+  uint32_t shape = 0;  // LightShape
+  uint32_t spectrum = 0;
+  float scale = 0;
+  uint32_t two_sided = 0;
+  float choice_probability = 0;
+  // triangle: a vertex and two edges. sphere, ellipsoid, disk: centre, and `axes`. point: position.
+  // directional: the direction towards the light.
+  float p[3] = {};
+  float axes[9] = {};     // triangle: two edges. quadrics: world images of the local x, y, z axes (times the radius)
+  float normal[3] = {};   // triangle, disk: unit normal of the emitting side
+  float area = 0;         // m^2
+  float inverse[9] = {};  // ellipsoid: rows of the inverse of `axes` as columns
+  float normal_sign = 1;  // sphere, ellipsoid: -1 emits inwards. disk: unused
+  float inner = 0;        // disk: inner radius / radius
+};
+static_assert(sizeof(LightRow) == 32 * sizeof(float));
+
+// Radiance from infinity: a spectrum, and where there is an image, per texel RGB fitted to spectra.
+struct Environment {
+  uint32_t light = no_index;  // its row of lights; no_index: black
+  uint32_t width = 0, height = 0;
+  ImageMapping mapping = ImageMapping::latitude_longitude;
+  Column<float> texels;    // four per texel: sigmoid coefficients c0 c1 c2 and scale
+  Distribution2D density;  // over the image's square, proportional to the texels' luminance times the measure
+  float to_world[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // rotation, row-major; to_local is its inverse
+  float to_local[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+};
+
+// A pixel coordinate (x, y), y down, is seen along direction = normalize(axis + x right + y down) from `origin`
+// (perspective), or along `axis` from origin + x right + y down (orthographic).
+struct CameraRow {
+  CameraKind kind = CameraKind::perspective;
+  float origin[3] = {}, axis[3] = {}, right[3] = {}, down[3] = {};
+  float lens_x[3] = {}, lens_y[3] = {};  // world vectors of the lens radius
+  float lens_radius = 0, focal_distance = 1;
+  float forward[3] = {};  // unit depth along the camera's axis, for the plane of focus
+};
+
+// Embree's scene: known to build_accelerator, intersect and shadow only.
+struct Accelerator;
+
+struct World {
+  ObjectColumns objects;
+  Column<float> positions;             // three per vertex, and one of padding at the end
+  Column<float> normals;               // three per vertex; (0, 0, 0): use the geometric one
+  Column<float> uvs;                   // two per vertex
+  Column<uint32_t> triangle_vertices;  // three per triangle
+  Column<Placement> placements;
+  DiffuseColumns diffuse;
+  ConductorColumns conductor;
+  DielectricColumns dielectric;
+  Column<LightRow> lights;
+  Distribution1D light_choice;
+  Environment environment;
+  CameraRow camera;
+  SpectrumSet spectra;
+  RenderSettings settings;
+  PixelFilter filter;
+  bool needs_tangents = false;  // an anisotropic material is present
+  bool has_instances = false;   // some triangles are in their object's space
+  bool has_quadrics = false;
+  uint64_t zero_area_triangles = 0;
+  std::unique_ptr<Accelerator, void (*)(Accelerator*)> accelerator{nullptr, nullptr};
+};
+
+}  // namespace metamer

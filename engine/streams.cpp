@@ -1,0 +1,59 @@
+#include "engine/streams.h"
+
+namespace metamer {
+namespace {
+
+template <size_t N>
+void take_all(BatchArena& arena, size_t rows, Columns<float, N>& columns) {
+  for (float*& column : columns) column = arena.take<float>(rows);
+}
+
+void take_paths(BatchArena& arena, size_t rows, PathStream& s) {
+  take_all(arena, rows, s.origin);
+  take_all(arena, rows, s.direction);
+  take_all(arena, rows, s.lambda_nm);
+  take_all(arena, rows, s.throughput);
+  s.pdf_direction = arena.take<float>(rows);
+  s.eta_scale = arena.take<float>(rows);
+  for (uint32_t** column : {&s.pixel_seed, &s.index, &s.slot}) *column = arena.take<uint32_t>(rows);
+}
+
+void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
+  for (auto* columns :
+       {&s.wo, &s.position, &s.normal, &s.shading_normal, &s.tangent, &s.light_direction, &s.next_direction})
+    take_all(arena, rows, *columns);
+  for (auto* columns : {&s.lambda_nm, &s.throughput, &s.light_radiance, &s.next_weight})
+    take_all(arena, rows, *columns);
+  for (float** column : {&s.distance, &s.offset, &s.pdf_direction, &s.eta_scale, &s.light_distance, &s.light_pdf,
+                         &s.next_pdf, &s.next_eta_scale})
+    *column = arena.take<float>(rows);
+  for (uint32_t** column : {&s.material, &s.light, &s.pixel_seed, &s.index, &s.slot})
+    *column = arena.take<uint32_t>(rows);
+}
+
+constexpr size_t columns_in_all = 2 * 19 + 3 + (7 * 3 + 4 * 4 + 8 + 5) + (6 + 1 + 4 + 1) + (12 + 2) + 1;
+constexpr size_t column_bytes = (sorted_capacity + column_lanes) * sizeof(float) + 2 * column_alignment;
+
+}  // namespace
+
+// The last vector of a stream may be read and written whole: every column has a vector of padding.
+Batch::Batch() : arena(columns_in_all * column_bytes) {
+  const size_t rows = sorted_capacity + column_lanes;
+  take_paths(arena, rows, paths);
+  take_paths(arena, rows, next);
+  hits = {arena.take<uint32_t>(rows), arena.take<uint32_t>(rows), arena.take<float>(rows)};
+  take_shade(arena, rows, shade);
+  take_all(arena, rows, shadow.origin);
+  take_all(arena, rows, shadow.direction);
+  shadow.t_far = arena.take<float>(rows);
+  take_all(arena, rows, shadow.contribution);
+  shadow.slot = arena.take<uint32_t>(rows);
+  take_all(arena, rows, slots.lambda_nm);
+  take_all(arena, rows, slots.inv_pdf_nm);
+  take_all(arena, rows, slots.radiance);
+  slots.pixel = arena.take<uint32_t>(rows);
+  slots.sample = arena.take<uint32_t>(rows);
+  order = arena.take<uint32_t>(rows);
+}
+
+}  // namespace metamer

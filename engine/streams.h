@@ -1,0 +1,130 @@
+// Every column that flows between the systems. A batch is up to `batch_capacity` paths of one tile; all of its
+// columns together stay within a core's L2 cache. Nothing here outlives a batch, except the slots, which live
+// until the batch is accumulated.
+//
+// Per path: PathStream 80 bytes, twice (this bounce's and the next one's rays); HitStream 12; ShadeStream 200;
+// ShadowStream 48; Slots 56.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/simd/column.h"
+
+namespace metamer {
+
+inline constexpr uint32_t batch_capacity = 2048;  // paths; a multiple of 16
+inline constexpr uint32_t dead_lane = 0xffffffffu;
+
+// What a hit's lanes are sorted by: each kind has its own kernel over all its lanes. The last two end a path.
+enum class ShadeKind : uint32_t { diffuse, rough_conductor, smooth_conductor, dielectric, absorber, miss };
+inline constexpr uint32_t shade_kind_count = 6;
+
+// Lanes [begin, end) of a sorted stream; begin is a multiple of 16, lanes up to the next multiple are dead.
+struct Group {
+  uint32_t begin = 0, end = 0;
+  uint32_t padded_end() const { return static_cast<uint32_t>(padded_to_lanes(end)); }
+};
+using Groups = std::array<Group, shade_kind_count>;
+
+// One allocation for all columns of a worker. Consecutive columns start a cache line more than a power of two
+// apart, so that the same row of many columns does not fall into one cache set.
+class BatchArena {
+ public:
+  explicit BatchArena(size_t bytes) : memory_(bytes) {}
+  template <class T>
+  T* take(size_t rows) {
+    T* column = reinterpret_cast<T*>(memory_.data() + used_);
+    used_ += (rows * sizeof(T) + column_alignment - 1) / column_alignment * column_alignment + column_alignment;
+    return column;
+  }
+  size_t bytes() const { return memory_.bytes(); }
+
+ private:
+  Column<std::byte> memory_;
+  size_t used_ = 0;
+};
+
+template <class T, size_t N>
+using Columns = std::array<T*, N>;
+
+// Rows a sorted stream may need: every group may end in a partly filled vector.
+inline constexpr uint32_t sorted_capacity = batch_capacity + shade_kind_count * column_lanes;
+
+// Rays to trace and what their paths carry. Writers: camera_rays, then roulette.
+struct PathStream {
+  uint32_t size = 0;
+  Columns<float, 3> origin;      // metres
+  Columns<float, 3> direction;   // unit length
+  Columns<float, 4> lambda_nm;   // hero first
+  Columns<float, 4> throughput;  // product of f cos / pdf; times the wavelengths' share after dispersion
+  float* pdf_direction;          // per solid angle, of `direction` at its origin; 0: not sampled, or by a delta lobe
+  float* eta_scale;              // (n of the first medium / n here)^2 so far: roulette must not see radiance scaling
+  uint32_t *pixel_seed, *index;  // the path's key into the low-discrepancy points
+  uint32_t* slot;                // its row in Slots
+};
+
+// Writer: intersect.
+struct HitStream {
+  uint32_t* object;     // row of World::objects; no_index: the ray left the scene
+  uint32_t* primitive;  // triangle within the object
+  float* distance;      // metres; exact for quadrics, Embree's (to be computed again) for triangles
+};
+
+// Vertices sorted by kind, one lane each; a dead lane has slot == dead_lane and throughput 0.
+struct ShadeStream {
+  uint32_t size = 0;
+  Groups groups;
+  // Writer: surface.
+  Columns<float, 3> wo;                       // unit, towards the viewer
+  Columns<float, 3> position;                 // metres
+  Columns<float, 3> normal;                   // geometric, unit, on the side the shape calls its outside
+  Columns<float, 3> shading_normal, tangent;  // unit; tangent only where the world asks for it
+  float* distance;                            // metres from the previous vertex
+  float* offset;                              // metres along the normal that a new ray must start away from the surface
+  uint32_t* material;                         // row in the table of the kind
+  uint32_t* light;                            // row of World::lights that this primitive is, or no_index
+  Columns<float, 4> lambda_nm, throughput;
+  float *pdf_direction, *eta_scale;
+  uint32_t *pixel_seed, *index, *slot;
+  // Writer: light_sample. Lanes without a light sample have radiance 0.
+  Columns<float, 3> light_direction;  // unit, from the vertex
+  Columns<float, 4> light_radiance;   // already divided by the pdf
+  float* light_distance;              // metres; infinity for lights at infinity
+  float* light_pdf;                   // per solid angle; 0 for point and directional lights
+  // Writer: the BSDF kernel of the kind.
+  Columns<float, 3> next_direction;  // unit
+  Columns<float, 4> next_weight;     // f cos / pdf
+  float* next_pdf;                   // per solid angle; 0 for a delta lobe
+  float* next_eta_scale;             // factor on eta_scale: 1 but at a refraction
+};
+
+// Light samples that are not 0, to be tested for occlusion. Writer: the BSDF kernels.
+struct ShadowStream {
+  uint32_t size = 0;
+  Columns<float, 3> origin, direction;
+  float* t_far;
+  Columns<float, 4> contribution;  // radiance at the camera if the light is seen
+  uint32_t* slot;
+};
+
+// What a path gathers, by its place in the batch.
+struct Slots {
+  uint32_t size = 0;
+  Columns<float, 4> lambda_nm, inv_pdf_nm;
+  Columns<float, 4> radiance;  // W m^-2 sr^-1 nm^-1, each wavelength on its own
+  uint32_t *pixel, *sample;    // pixel of the tile (row-major), or dead_lane outside the picture; sample index
+};
+
+struct Batch {
+  explicit Batch();
+  BatchArena arena;
+  PathStream paths, next;
+  HitStream hits;
+  ShadeStream shade;
+  ShadowStream shadow;
+  Slots slots;
+  uint32_t* order;  // sorted lane -> path; dead_lane where padding
+};
+
+}  // namespace metamer

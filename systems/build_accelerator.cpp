@@ -1,0 +1,205 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "engine/simd/instruction_set.h"
+#include "systems/accelerator.h"
+#include "systems/freeze.h"
+
+namespace metamer {
+namespace {
+
+void destroy(Accelerator* accelerator) {
+  if (accelerator == nullptr) return;
+  for (RTCScene scene : accelerator->shared_meshes) rtcReleaseScene(scene);
+  if (accelerator->root != nullptr) rtcReleaseScene(accelerator->root);
+  if (accelerator->device != nullptr) rtcReleaseDevice(accelerator->device);
+  delete accelerator;
+}
+
+struct ObjectRay {
+  double origin[3], direction[3];
+};
+
+ObjectRay to_object(const Placement& placement, const float (&origin)[3], const float (&direction)[3]) {
+  ObjectRay ray;
+  for (int i = 0; i < 3; ++i) {
+    const float* row = placement.to_object + 4 * i;
+    ray.origin[i] = double{row[0]} * origin[0] + double{row[1]} * origin[1] + double{row[2]} * origin[2] + row[3];
+    ray.direction[i] = double{row[0]} * direction[0] + double{row[1]} * direction[1] + double{row[2]} * direction[2];
+  }
+  return ray;
+}
+
+// Distances along the ray at which it meets the quadric, nearest first; unused ones are infinite. The quadratic's
+// discriminant comes from the distance between the ray and the centre, which does not cancel for far-away spheres
+// (Haines, Guenther, Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019).
+void sphere_distances(const Placement& placement, const ObjectRay& ray, double (&t)[2]) {
+  const double radius = placement.radius;
+  const auto dot = [](const double(&a)[3], const double(&b)[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  const double a = dot(ray.direction, ray.direction), b = -dot(ray.origin, ray.direction);
+  double nearest[3];
+  for (int i = 0; i < 3; ++i) nearest[i] = ray.origin[i] + b / a * ray.direction[i];
+  const double discriminant = radius * radius - dot(nearest, nearest);
+  if (!(discriminant >= 0)) return;
+  const double c = dot(ray.origin, ray.origin) - radius * radius;
+  const double q = b + std::copysign(std::sqrt(a * discriminant), b);
+  const double first = q != 0 ? c / q : 0, second = q / a;
+  t[0] = std::min(first, second);
+  t[1] = std::max(first, second);
+}
+
+void disk_distances(const Placement& placement, const ObjectRay& ray, double (&t)[2]) {
+  if (ray.direction[2] == 0) return;
+  const double distance = (double{placement.height} - ray.origin[2]) / ray.direction[2];
+  const double x = ray.origin[0] + distance * ray.direction[0], y = ray.origin[1] + distance * ray.direction[1];
+  const double r2 = x * x + y * y;
+  if (r2 <= double{placement.radius} * placement.radius &&
+      r2 >= double{placement.inner_radius} * placement.inner_radius)
+    t[0] = distance;
+}
+
+// The nearest hit in (near, far), or infinity.
+float quadric_distance(const World& world, uint32_t object, const ObjectRay& ray, float near, float far) {
+  const Placement& placement = world.placements[world.objects.placement[object]];
+  double t[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  if (world.objects.kind[object] == static_cast<uint32_t>(ShapeKind::sphere))
+    sphere_distances(placement, ray, t);
+  else
+    disk_distances(placement, ray, t);
+  for (const double distance : t)
+    if (distance > near && distance < far) return static_cast<float>(distance);
+  return std::numeric_limits<float>::infinity();
+}
+
+float lane_distance(const World& world, uint32_t object, RTCRayN* rays, unsigned n, unsigned lane) {
+  const float origin[3] = {RTCRayN_org_x(rays, n, lane), RTCRayN_org_y(rays, n, lane), RTCRayN_org_z(rays, n, lane)};
+  const float direction[3] = {RTCRayN_dir_x(rays, n, lane), RTCRayN_dir_y(rays, n, lane), RTCRayN_dir_z(rays, n, lane)};
+  const ObjectRay ray = to_object(world.placements[world.objects.placement[object]], origin, direction);
+  return quadric_distance(world, object, ray, RTCRayN_tnear(rays, n, lane), RTCRayN_tfar(rays, n, lane));
+}
+
+void intersect_quadric(const RTCIntersectFunctionNArguments* args) {
+  const World& world = *static_cast<const Accelerator::Quadric*>(args->geometryUserPtr)->world;
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
+  for (unsigned lane = 0; lane < args->N; ++lane) {
+    if (args->valid[lane] == 0) continue;
+    const float distance = lane_distance(world, args->geomID, rays, args->N, lane);
+    if (std::isinf(distance)) continue;
+    RTCRayN_tfar(rays, args->N, lane) = distance;
+    RTCHitN_geomID(hits, args->N, lane) = args->geomID;
+    RTCHitN_primID(hits, args->N, lane) = args->primID;
+    RTCHitN_instID(hits, args->N, lane, 0) = args->context->instID[0];
+  }
+}
+
+void occluded_quadric(const RTCOccludedFunctionNArguments* args) {
+  const World& world = *static_cast<const Accelerator::Quadric*>(args->geometryUserPtr)->world;
+  for (unsigned lane = 0; lane < args->N; ++lane) {
+    if (args->valid[lane] == 0) continue;
+    if (!std::isinf(lane_distance(world, args->geomID, args->ray, args->N, lane)))
+      RTCRayN_tfar(args->ray, args->N, lane) = -std::numeric_limits<float>::infinity();
+  }
+}
+
+// The box of an affinely placed sphere or disk: along each axis the support of the image of the unit ball or disk.
+void quadric_bounds(const RTCBoundsFunctionArguments* args) {
+  const auto& [world_pointer, object] = *static_cast<const Accelerator::Quadric*>(args->geometryUserPtr);
+  const World& world = *world_pointer;
+  const Placement& placement = world.placements[world.objects.placement[object]];
+  const bool is_sphere = world.objects.kind[object] == static_cast<uint32_t>(ShapeKind::sphere);
+  float lower[3], upper[3];
+  for (int i = 0; i < 3; ++i) {
+    const float* row = placement.to_world + 4 * i;
+    const double z = is_sphere ? double{row[2]} * row[2] : 0.0;
+    const double extent = double{placement.radius} * std::sqrt(double{row[0]} * row[0] + double{row[1]} * row[1] + z);
+    const double centre = row[3] + (is_sphere ? 0.0 : double{row[2]} * placement.height);
+    const double slack = 1e-6 * (extent + std::abs(centre));
+    lower[i] = static_cast<float>(centre - extent - slack);
+    upper[i] = static_cast<float>(centre + extent + slack);
+  }
+  *args->bounds_o = {lower[0], lower[1], lower[2], 0, upper[0], upper[1], upper[2], 0};
+}
+
+void check(RTCDevice device) {
+  if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
+    throw std::runtime_error(fmt::format("Embree failed with error {}", static_cast<int>(error)));
+}
+
+RTCGeometry triangle_geometry(const World& world, RTCDevice device, uint32_t object) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  const size_t vertices = world.normals.size() / 3;
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, world.positions.data(), 0,
+                             3 * sizeof(float), vertices);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, world.triangle_vertices.data(),
+                             size_t{3} * sizeof(uint32_t) * world.objects.first_triangle[object], 3 * sizeof(uint32_t),
+                             world.objects.triangle_count[object]);
+  return geometry;
+}
+
+RTCGeometry quadric_geometry(Accelerator& accelerator, const World& world, uint32_t object) {
+  RTCDevice device = accelerator.device;
+  accelerator.quadrics.push_back({&world, object});
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, 1);
+  rtcSetGeometryUserData(geometry, &accelerator.quadrics.back());
+  rtcSetGeometryBoundsFunction(geometry, quadric_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect_quadric);
+  rtcSetGeometryOccludedFunction(geometry, occluded_quadric);
+  return geometry;
+}
+
+// Spatial splits make the best trees; the builder is the same every time only on one thread, which the device has.
+RTCScene new_scene(RTCDevice device) {
+  RTCScene scene = rtcNewScene(device);
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+  return scene;
+}
+
+}  // namespace
+
+void build_accelerator(World& world) {
+  auto* accelerator = new Accelerator;
+  world.accelerator = {accelerator, destroy};
+  const std::string config = fmt::format("threads=1,isa={}", embree_isa_name());
+  accelerator->device = rtcNewDevice(config.c_str());
+  RTCDevice device = accelerator->device;
+  if (device == nullptr) throw std::runtime_error("Embree could not be started with " + config);
+  accelerator->root = new_scene(device);
+  std::unordered_map<uint32_t, RTCScene> shared;  // by first triangle
+  for (uint32_t object = 0; object < world.objects.size(); ++object) {
+    RTCGeometry geometry = nullptr;
+    const uint32_t placement = world.objects.placement[object];
+    if (world.objects.kind[object] != static_cast<uint32_t>(ShapeKind::mesh)) {
+      geometry = quadric_geometry(*accelerator, world, object);
+    } else if (placement == 0) {
+      geometry = triangle_geometry(world, device, object);
+    } else {
+      RTCScene& mesh = shared[world.objects.first_triangle[object]];
+      if (mesh == nullptr) {
+        mesh = new_scene(device);
+        RTCGeometry triangles = triangle_geometry(world, device, object);
+        rtcCommitGeometry(triangles);
+        rtcAttachGeometryByID(mesh, triangles, 0);
+        rtcReleaseGeometry(triangles);
+        rtcCommitScene(mesh);
+        accelerator->shared_meshes.push_back(mesh);
+      }
+      geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+      rtcSetGeometryInstancedScene(geometry, mesh);
+      rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, world.placements[placement].to_world);
+    }
+    rtcSetGeometryMask(geometry, world.objects.visibility[object]);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(accelerator->root, geometry, object);
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(accelerator->root);
+  check(device);
+}
+
+}  // namespace metamer

@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "systems/freeze.h"
+#include "systems/light_rows.h"
+
+namespace metamer {
+namespace {
+
+struct Builder {
+  const Scene& scene;
+  World& world;
+  Diagnostics& diagnostics;
+  std::vector<uint32_t> mesh_users;    // how many entities show a mesh
+  std::vector<uint32_t> shared_first;  // first triangle of a mesh kept in its own space, or no_index
+};
+
+Placement make_placement(const glm::dmat4& to_world, const Geometry& geometry) {
+  const glm::dmat4 to_object = glm::inverse(to_world);
+  Placement placement;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column) {
+      placement.to_world[row * 4 + column] = static_cast<float>(to_world[column][row]);
+      placement.to_object[row * 4 + column] = static_cast<float>(to_object[column][row]);
+    }
+  placement.radius = geometry.radius;
+  placement.inner_radius = geometry.inner_radius;
+  placement.height = geometry.height;
+  placement.normal_sign = geometry.flip_normal != 0 ? -1.0f : 1.0f;
+  return placement;
+}
+
+void push_vector(Column<float>& column, const glm::dvec3& v) {
+  for (int i = 0; i < 3; ++i) column.push_back(static_cast<float>(v[i]));
+}
+
+// Appends the vertices and triangles of a mesh, transformed by `to_world`; returns the first triangle.
+//
+// A triangle's outside is the side its vertex normals point to where there are any, else the side from which its
+// vertices run counter-clockwise in the mesh's own space; `flip` turns it over. The vertex order is made to say so.
+uint32_t add_triangles(Builder& b, const Mesh& mesh, const glm::dmat4& to_world, bool flip) {
+  World& world = b.world;
+  const uint32_t first_triangle = static_cast<uint32_t>(world.triangle_vertices.size() / 3);
+  const uint32_t first_vertex = static_cast<uint32_t>(world.positions.size() / 3);
+  const glm::dmat3 linear(to_world);
+  const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(linear));
+  const bool mirrored = glm::determinant(linear) < 0;
+  const bool has_normals = mesh.normals.size() == mesh.positions.size();
+  const bool has_uvs = mesh.uvs.size() == mesh.positions.size();
+  world.positions.reserve(world.positions.size() + mesh.positions.size() * 3);
+  world.normals.reserve(world.normals.size() + mesh.positions.size() * 3);
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    push_vector(world.positions, glm::dvec3(to_world * glm::dvec4(glm::dvec3(mesh.positions[v]), 1.0)));
+    glm::dvec3 normal(0);
+    if (has_normals) {
+      normal = normal_matrix * glm::dvec3(mesh.normals[v]);
+      const double length = glm::length(normal);
+      normal = length > 0 ? (flip ? -normal : normal) / length : glm::dvec3(0);
+    }
+    push_vector(world.normals, normal);
+    world.uvs.push_back(has_uvs ? mesh.uvs[v].x : 0.0f);
+    world.uvs.push_back(has_uvs ? mesh.uvs[v].y : 0.0f);
+  }
+  const auto vector_at = [](const Column<float>& column, uint32_t v) {
+    return glm::dvec3(column[v * 3], column[v * 3 + 1], column[v * 3 + 2]);
+  };
+  for (size_t t = 0; t < mesh.indices.size(); t += 3) {
+    uint32_t i[3];
+    for (int k = 0; k < 3; ++k) i[k] = first_vertex + mesh.indices[t + k];
+    const glm::dvec3 p = vector_at(world.positions, i[0]);
+    const glm::dvec3 cross = glm::cross(vector_at(world.positions, i[1]) - p, vector_at(world.positions, i[2]) - p);
+    if (!(glm::dot(cross, cross) > 0)) ++world.zero_area_triangles;
+    const glm::dvec3 towards =
+        vector_at(world.normals, i[0]) + vector_at(world.normals, i[1]) + vector_at(world.normals, i[2]);
+    const double side = glm::dot(cross, towards);
+    const bool turn = side != 0 ? side < 0 : mirrored != flip;
+    if (turn) std::swap(i[1], i[2]);
+    for (const uint32_t index : i) world.triangle_vertices.push_back(index);
+  }
+  return first_triangle;
+}
+
+Mesh rectangle_mesh(const Geometry& geometry) {
+  Mesh mesh;
+  const float x = geometry.width / 2, y = geometry.depth / 2;
+  for (const glm::vec3 p : {glm::vec3(-x, -y, 0), glm::vec3(x, -y, 0), glm::vec3(x, y, 0), glm::vec3(-x, y, 0)})
+    mesh.positions.push_back(p);
+  for (const glm::vec2 uv : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(1, 1), glm::vec2(0, 1)})
+    mesh.uvs.push_back(uv);
+  for (const uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(i);
+  return mesh;
+}
+
+void add_mesh_object(Builder& b, Entity entity, const Geometry& geometry, const Mesh& mesh,
+                     const glm::dmat4& to_world) {
+  ObjectColumns& objects = b.world.objects;
+  const bool emits = b.scene.registry.has<Light>(entity);
+  const bool shared =
+      geometry.kind == ShapeKind::mesh && b.mesh_users[geometry.mesh] > 1 && !emits && geometry.flip_normal == 0;
+  uint32_t first = 0, placement = 0;
+  if (shared) {
+    uint32_t& known = b.shared_first[geometry.mesh];
+    if (known == no_index) known = add_triangles(b, mesh, glm::dmat4(1), false);
+    first = known;
+    placement = static_cast<uint32_t>(b.world.placements.size());
+    b.world.placements.push_back(make_placement(to_world, geometry));
+    b.world.has_instances = true;
+  } else {
+    first = add_triangles(b, mesh, to_world, geometry.flip_normal != 0);
+  }
+  objects.first_triangle.push_back(first);
+  objects.triangle_count.push_back(static_cast<uint32_t>(mesh.indices.size() / 3));
+  objects.placement.push_back(placement);
+  if (!emits) return;
+  objects.first_light.back() = static_cast<uint32_t>(b.world.lights.size());
+  for (uint32_t t = first; t < first + mesh.indices.size() / 3; ++t) {
+    glm::dvec3 vertices[3];
+    for (int k = 0; k < 3; ++k) {
+      const float* p = b.world.positions.data() + size_t{3} * b.world.triangle_vertices[size_t{3} * t + k];
+      vertices[k] = {p[0], p[1], p[2]};
+    }
+    b.world.lights.push_back(triangle_light(vertices, b.scene.registry.get<Light>(entity)));
+  }
+}
+
+void add_quadric_object(Builder& b, Entity entity, const Geometry& geometry, const glm::dmat4& to_world) {
+  ObjectColumns& objects = b.world.objects;
+  objects.first_triangle.push_back(0);
+  objects.triangle_count.push_back(0);
+  objects.placement.push_back(static_cast<uint32_t>(b.world.placements.size()));
+  b.world.placements.push_back(make_placement(to_world, geometry));
+  b.world.has_quadrics = true;
+  if (!b.scene.registry.has<Light>(entity)) return;
+  objects.first_light.back() = static_cast<uint32_t>(b.world.lights.size());
+  const Light light = b.scene.registry.get<Light>(entity);
+  b.world.lights.push_back(geometry.kind == ShapeKind::sphere ? sphere_light(to_world, geometry, light)
+                                                              : disk_light(to_world, geometry, light));
+}
+
+}  // namespace
+
+void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
+                    World& world, Diagnostics& diagnostics) {
+  const Registry& registry = scene.registry;
+  Builder b{scene, world, diagnostics, {}, {}};
+  b.mesh_users.resize(scene.meshes.size());
+  b.shared_first.resize(scene.meshes.size(), no_index);
+  world.placements.push_back(make_placement(glm::dmat4(1), Geometry{}));
+  const Table<Geometry>& table = registry.table<Geometry>();
+  registry.each<Geometry>([&](Entity entity, uint32_t row) {
+    const Geometry geometry = table.get(row);
+    if (geometry.kind != ShapeKind::mesh) return;
+    if (geometry.mesh >= scene.meshes.size())
+      diagnostics.error(scene.location(entity),
+                        fmt::format("{} names a mesh that does not exist", scene.describe(entity)));
+    else
+      ++b.mesh_users[geometry.mesh];
+  });
+  if (diagnostics.has_errors()) return;
+  registry.each<Geometry>([&](Entity entity, uint32_t row) {
+    const Geometry geometry = table.get(row);
+    ObjectColumns& objects = world.objects;
+    const bool is_mesh = geometry.kind == ShapeKind::mesh || geometry.kind == ShapeKind::rectangle;
+    objects.kind.push_back(static_cast<uint32_t>(is_mesh ? ShapeKind::mesh : geometry.kind));
+    objects.shade_kind.push_back(static_cast<uint32_t>(materials[entity.index].kind));
+    objects.material.push_back(materials[entity.index].row);
+    objects.first_light.push_back(no_index);
+    objects.visibility.push_back(registry.get<Visibility>(entity).mask);
+    objects.entity.push_back(entity.index);
+    const glm::dmat4& matrix = to_world[entity.index];
+    if (geometry.kind == ShapeKind::mesh)
+      add_mesh_object(b, entity, geometry, scene.meshes[geometry.mesh], matrix);
+    else if (is_mesh)
+      add_mesh_object(b, entity, geometry, rectangle_mesh(geometry), matrix);
+    else
+      add_quadric_object(b, entity, geometry, matrix);
+  });
+  // Embree reads 16 bytes for the last vertex.
+  for (int i = 0; i < 4; ++i) world.positions.push_back(0);
+}
+
+}  // namespace metamer

@@ -1,0 +1,116 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "systems/camera_rays.cpp"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+// Highway's headers come after foreach_target.
+#include "engine/sampling/filters-inl.h"
+#include "engine/sampling/points-inl.h"
+#include "engine/sampling/warps-inl.h"
+#include "engine/spectrum/wavelengths-inl.h"
+#include "systems/dimensions.h"
+#include "systems/lanes-inl.h"
+#include "systems/systems.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace metamer::HWY_NAMESPACE {
+namespace {
+
+HWY_INLINE Vec3 splat3(const float (&v)[3]) { return {splat(v[0]), splat(v[1]), splat(v[2])}; }
+
+// begin <= x < end, all below 2^31.
+HWY_INLINE hn::Mask<UintTag> is_within(VU x, uint32_t begin, uint32_t end) {
+  const IntTag di;
+  const VI at = as_index(x);
+  const auto before = hn::Lt(at, hn::Set(di, static_cast<int32_t>(begin)));
+  return hn::RebindMask(UintTag(), hn::AndNot(before, hn::Lt(at, hn::Set(di, static_cast<int32_t>(end)))));
+}
+
+struct Ray {
+  Vec3 origin, direction;
+};
+
+// The ray through film coordinate (x, y), y down; lens_u, lens_v in [0, 1) choose the point of the lens.
+HWY_INLINE Ray camera_ray(const CameraRow& camera, VF x, VF y, VF lens_u, VF lens_v) {
+  const Vec3 across = mul_add(splat3(camera.right), x, splat3(camera.down) * y);
+  const bool perspective = camera.kind == CameraKind::perspective;
+  Ray ray;
+  ray.origin = perspective ? splat3(camera.origin) : splat3(camera.origin) + across;
+  ray.direction = normalize(perspective ? splat3(camera.axis) + across : splat3(camera.axis));
+  if (camera.lens_radius > 0) {
+    // All rays of a film point meet at depth focal_distance.
+    const VF depth = hn::Div(splat(camera.focal_distance), dot(ray.direction, splat3(camera.forward)));
+    const Vec3 focus = mul_add(ray.direction, depth, ray.origin);
+    const Point2V lens = sample_concentric_disk(lens_u, lens_v);
+    ray.origin = mul_add(splat3(camera.lens_x), lens.x, mul_add(splat3(camera.lens_y), lens.y, ray.origin));
+    ray.direction = normalize(focus - ray.origin);
+  }
+  return ray;
+}
+
+void camera_rays_kernel(const World& world, std::span<const RayPacket> packets, const TileRect& tile, PathStream& paths,
+                        Slots& slots) {
+  const UintTag du;
+  const size_t step = lane_count();
+  const VU lane = hn::Iota(du, 0);
+  const uint32_t x_end = std::min(tile.x1, world.settings.width), y_end = std::min(tile.y1, world.settings.height);
+  const WavelengthTable& wavelengths = wavelength_table();
+  size_t i = 0;
+  for (const RayPacket& packet : packets) {
+    for (size_t first = 0; first < column_lanes; first += step, i += step) {
+      const VU within = hn::Add(lane, splat_u(static_cast<uint32_t>(first)));
+      const VU x = hn::Add(splat_u(packet.x), hn::And(within, splat_u(3)));
+      const VU y = hn::Add(splat_u(packet.y), hn::ShiftRight<2>(within));
+      const VU sample = splat_u(packet.sample);
+      const PointKey key = make_point_key(x, y, sample, world.settings.seed);
+      VF u, v;
+      sample_2d(key, splat_u(film_dimension), &u, &v);
+      const Point2V offset = sample_filter(world.filter, u, v);
+      const VF film_x = hn::Add(hn::Add(hn::ConvertTo(FloatTag(), as_index(x)), splat(0.5f)), offset.x);
+      const VF film_y = hn::Add(hn::Add(hn::ConvertTo(FloatTag(), as_index(y)), splat(0.5f)), offset.y);
+      VF lens_u = hn::Zero(FloatTag()), lens_v = lens_u;
+      if (world.camera.lens_radius > 0) sample_2d(key, splat_u(lens_dimension), &lens_u, &lens_v);
+      const Ray ray = camera_ray(world.camera, film_x, film_y, lens_u, lens_v);
+      VF rotation, lambda_nm[4], inv_pdf_nm[4];
+      sample_2d(key, splat_u(wavelength_dimension), &u, &rotation);
+      sample_wavelengths(wavelengths, u, rotation, lambda_nm, inv_pdf_nm);
+
+      store(ray.origin, paths.origin, i);
+      store(ray.direction, paths.direction, i);
+      store(lambda_nm, paths.lambda_nm, i);
+      const VU slot = hn::Add(lane, splat_u(static_cast<uint32_t>(i)));
+      for (size_t j = 0; j < 4; ++j) {
+        store(splat(1.0f), paths.throughput[j], i);
+        store(lambda_nm[j], slots.lambda_nm[j], i);
+        store(inv_pdf_nm[j], slots.inv_pdf_nm[j], i);
+        store(hn::Zero(FloatTag()), slots.radiance[j], i);
+      }
+      store(hn::Zero(FloatTag()), paths.pdf_direction, i);
+      store(splat(1.0f), paths.eta_scale, i);
+      store(key.pixel_seed, paths.pixel_seed, i);
+      store(key.index_reversed, paths.index, i);
+      store(slot, paths.slot, i);
+      const auto inside = hn::And(is_within(x, tile.x0, x_end), is_within(y, tile.y0, y_end));
+      const VU pixel =
+          hn::Add(hn::Mul(hn::Sub(y, splat_u(tile.y0)), splat_u(tile.width())), hn::Sub(x, splat_u(tile.x0)));
+      store(hn::IfThenElse(inside, pixel, splat_u(dead_lane)), slots.pixel, i);
+      store(sample, slots.sample, i);
+    }
+  }
+  paths.size = slots.size = static_cast<uint32_t>(i);
+}
+
+}  // namespace
+}  // namespace metamer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace metamer {
+
+HWY_EXPORT(camera_rays_kernel);
+
+void camera_rays(const World& world, std::span<const RayPacket> packets, const TileRect& tile, PathStream& paths,
+                 Slots& slots) {
+  HWY_DYNAMIC_DISPATCH(camera_rays_kernel)(world, packets, tile, paths, slots);
+}
+
+}  // namespace metamer
+#endif

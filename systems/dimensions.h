@@ -1,0 +1,26 @@
+// Which low-discrepancy dimension decides what. A 1D and a 2D draw take one number each.
+#pragma once
+#include <cstdint>
+
+namespace metamer {
+
+inline constexpr uint32_t film_dimension = 0;        // 2D: where in the pixel's filter
+inline constexpr uint32_t wavelength_dimension = 1;  // 2D: position within the strata, and their rotation
+inline constexpr uint32_t lens_dimension = 2;        // 2D
+
+// At each vertex, from first_bounce_dimension + depth * dimensions_per_bounce on:
+inline constexpr uint32_t first_bounce_dimension = 4;
+inline constexpr uint32_t dimensions_per_bounce = 8;
+enum BounceDimension : uint32_t {
+  light_choice_dimension,  // 1D
+  light_point_dimension,   // 2D
+  lobe_dimension,          // 1D: which lobe of the BSDF
+  direction_dimension,     // 2D: where in the lobe
+  roulette_dimension,      // 1D
+};
+
+constexpr uint32_t bounce_dimension(uint32_t depth, BounceDimension dimension) {
+  return first_bounce_dimension + depth * dimensions_per_bounce + dimension;
+}
+
+}  // namespace metamer

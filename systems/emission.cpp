@@ -1,0 +1,89 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "systems/emission.cpp"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+// Highway's headers come after foreach_target.
+#include "systems/lights-inl.h"
+#include "systems/systems.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace metamer::HWY_NAMESPACE {
+namespace {
+
+HWY_INLINE void add_radiance(MF mask, const ShadeStream& shade, size_t i, const VF radiance[4], VF weight,
+                             Slots& slots) {
+  const VU slot = load(shade.slot, i);
+  for (size_t j = 0; j < 4; ++j) {
+    const VF seen = hn::Mul(hn::Mul(load(shade.throughput[j], i), radiance[j]), weight);
+    add_to_slots(mask, seen, slots.radiance[j], slot);
+  }
+}
+
+// 1 where light sampling could not have found the light: straight from the camera, or after a mirror.
+HWY_INLINE VF weight_of(VF pdf_direction, VF pdf_light) {
+  const MF sampled = hn::Gt(pdf_direction, hn::Zero(FloatTag()));
+  return hn::IfThenElse(sampled, power_heuristic(pdf_direction, pdf_light), splat(1.0f));
+}
+
+void hit_emission(const World& world, const ShadeStream& shade, size_t i, Slots& slots) {
+  const FloatTag d;
+  const VF zero = hn::Zero(d);
+  const VU light_row = load(shade.light, i);
+  const MF emits = hn::And(is_live(load(shade.slot, i)), float_mask(hn::Ne(light_row, splat_u(no_index))));
+  if (hn::AllFalse(d, emits)) return;
+  const LightFields light(world, as_index(hn::IfThenElseZero(uint_mask(emits), light_row)));
+  const Vec3 wo = load(shade.wo, i), position = load(shade.position, i), normal = load(shade.normal, i);
+  const VF distance = load(shade.distance, i);
+  const MF two_sided = float_mask(hn::Ne(light.word(offsetof(LightRow, two_sided)), splat_u(0)));
+  const MF seen = hn::And(emits, hn::Or(two_sided, hn::Gt(dot(wo, normal), zero)));
+  if (hn::AllFalse(d, seen)) return;
+  VF lambda_nm[4], radiance[4];
+  load(shade.lambda_nm, i, lambda_nm);
+  light_spectrum(world, light, lambda_nm, radiance);
+  const Vec3 from = mul_add(wo, distance, position);
+  const VF pdf_light = area_light_pdf(light, from, position, normal, -wo, distance);
+  add_radiance(seen, shade, i, radiance, weight_of(load(shade.pdf_direction, i), pdf_light), slots);
+}
+
+void miss_emission(const World& world, const ShadeStream& shade, size_t i, Slots& slots) {
+  const Environment& environment = world.environment;
+  const LightFields light(world, hn::Set(IntTag(), static_cast<int>(environment.light)));
+  VF lambda_nm[4], radiance[4];
+  load(shade.lambda_nm, i, lambda_nm);
+  light_spectrum(world, light, lambda_nm, radiance);
+  const Vec3 local = rotate(environment.to_local, -load(shade.wo, i));
+  const ImagePoint point = image_point(environment, local);
+  if (environment.width > 0) {
+    VF factor[4];
+    environment_image(environment, point.u, point.v, lambda_nm, factor);
+    for (int j = 0; j < 4; ++j) radiance[j] = hn::Mul(radiance[j], factor[j]);
+  }
+  const VF pdf_light =
+      hn::Mul(environment_pdf(environment, point), light.number(offsetof(LightRow, choice_probability)));
+  add_radiance(is_live(load(shade.slot, i)), shade, i, radiance, weight_of(load(shade.pdf_direction, i), pdf_light),
+               slots);
+}
+
+void emission_kernel(const World& world, const ShadeStream& shade, Slots& slots) {
+  const size_t step = lane_count();
+  const Group& miss = shade.groups[static_cast<size_t>(ShadeKind::miss)];
+  if (!world.lights.empty())
+    for (size_t i = 0; i < miss.begin; i += step) hit_emission(world, shade, i, slots);
+  if (world.environment.light != no_index)
+    for (size_t i = miss.begin; i < miss.padded_end(); i += step) miss_emission(world, shade, i, slots);
+}
+
+}  // namespace
+}  // namespace metamer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace metamer {
+
+HWY_EXPORT(emission_kernel);
+
+void emission(const World& world, const ShadeStream& shade, Slots& slots) {
+  HWY_DYNAMIC_DISPATCH(emission_kernel)(world, shade, slots);
+}
+
+}  // namespace metamer
+#endif

@@ -1,0 +1,105 @@
+// Radiance from infinity by direction, and the density of its directions.
+#if defined(METAMER_SYSTEMS_ENVIRONMENT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef METAMER_SYSTEMS_ENVIRONMENT_INL_H_
+#undef METAMER_SYSTEMS_ENVIRONMENT_INL_H_
+#else
+#define METAMER_SYSTEMS_ENVIRONMENT_INL_H_
+#endif
+
+#include "engine/sampling/distribution-inl.h"
+#include "engine/simd/math-inl.h"
+#include "engine/spectrum/spectrum-inl.h"
+#include "systems/lanes-inl.h"
+#include "systems/systems.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace metamer::HWY_NAMESPACE {
+
+HWY_INLINE Vec3 rotate(const float (&m)[9], const Vec3& v) {
+  const auto row = [&](int r) {
+    return hn::MulAdd(splat(m[3 * r]), v.x, hn::MulAdd(splat(m[3 * r + 1]), v.y, hn::Mul(splat(m[3 * r + 2]), v.z)));
+  };
+  return {row(0), row(1), row(2)};
+}
+
+// A point of the environment image's unit square and the solid angle of the sphere per unit of its area there.
+struct ImagePoint {
+  VF u, v, solid_angle;
+};
+
+// latitude_longitude: z up; u is the longitude atan2(y, x) / 2 pi, v the angle from +z over pi.
+// equal_area: Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD", JGT 13(3), 2008, as pbrt-v4.
+HWY_INLINE ImagePoint latitude_longitude_point(const Vec3& d) {
+  const VF zero = hn::Zero(FloatTag()), one = splat(1.0f);
+  VF u = hn::Mul(atan2(d.y, d.x), splat(0.5f * inverse_pi));
+  u = hn::IfThenElse(hn::Lt(u, zero), hn::Add(u, one), u);
+  const VF sin_theta = hn::Sqrt(hn::MulAdd(d.x, d.x, hn::Mul(d.y, d.y)));
+  const VF v = hn::Mul(atan2(sin_theta, d.z), splat(inverse_pi));
+  return {hn::Min(u, splat(0x1.fffffep-1f)), clamp(v, 0.0f, 0x1.fffffep-1f), hn::Mul(splat(2 * pi * pi), sin_theta)};
+}
+HWY_INLINE Vec3 latitude_longitude_direction(VF u, VF v, VF* solid_angle) {
+  const SinCos phi = sincos_2pi(u), theta = sincos_2pi(hn::Mul(v, splat(0.5f)));
+  *solid_angle = hn::Mul(splat(2 * pi * pi), theta.sin);
+  return {hn::Mul(theta.sin, phi.cos), hn::Mul(theta.sin, phi.sin), theta.cos};
+}
+
+HWY_INLINE ImagePoint equal_area_point(const Vec3& d) {
+  const VF zero = hn::Zero(FloatTag()), one = splat(1.0f), half = splat(0.5f);
+  const VF x = hn::Abs(d.x), y = hn::Abs(d.y), z = hn::Abs(d.z);
+  const VF r = safe_sqrt(hn::Sub(one, z));
+  const VF larger = hn::Max(x, y), smaller = hn::Min(x, y);
+  const VF ratio = hn::IfThenElse(hn::Gt(larger, zero), hn::Div(smaller, hn::Max(larger, splat(1e-30f))), zero);
+  VF phi = hn::Mul(atan2(ratio, one), splat(2 * inverse_pi));
+  phi = hn::IfThenElse(hn::Lt(x, y), hn::Sub(one, phi), phi);
+  VF v = hn::Mul(phi, r), u = hn::Sub(r, v);
+  const MF south = hn::Lt(d.z, zero);
+  const VF folded_u = hn::Sub(one, v), folded_v = hn::Sub(one, u);
+  u = hn::IfThenElse(south, folded_u, u);
+  v = hn::IfThenElse(south, folded_v, v);
+  u = hn::MulAdd(hn::CopySign(u, d.x), half, half);
+  v = hn::MulAdd(hn::CopySign(v, d.y), half, half);
+  return {clamp(u, 0.0f, 0x1.fffffep-1f), clamp(v, 0.0f, 0x1.fffffep-1f), splat(4 * pi)};
+}
+HWY_INLINE Vec3 equal_area_direction(VF image_u, VF image_v) {
+  const VF zero = hn::Zero(FloatTag()), one = splat(1.0f);
+  const VF u = hn::MulSub(splat(2.0f), image_u, one), v = hn::MulSub(splat(2.0f), image_v, one);
+  const VF au = hn::Abs(u), av = hn::Abs(v);
+  const VF signed_distance = hn::Sub(one, hn::Add(au, av));
+  const VF r = hn::Sub(one, hn::Abs(signed_distance));
+  const VF phi =
+      hn::IfThenElse(hn::Eq(r, zero), one, hn::Add(hn::Div(hn::Sub(av, au), hn::Max(r, splat(1e-30f))), one));
+  const SinCos angle = sincos_2pi(hn::Mul(phi, splat(0.125f)));  // phi pi / 4
+  const VF z = hn::CopySign(hn::NegMulAdd(r, r, one), signed_distance);
+  const VF radius = hn::Mul(r, safe_sqrt(hn::NegMulAdd(r, r, splat(2.0f))));
+  return {hn::CopySign(hn::Mul(angle.cos, radius), u), hn::CopySign(hn::Mul(angle.sin, radius), v), z};
+}
+
+HWY_INLINE ImagePoint image_point(const Environment& environment, const Vec3& local) {
+  return environment.mapping == ImageMapping::equal_area ? equal_area_point(local) : latitude_longitude_point(local);
+}
+
+// The image's texel at (u, v), as a factor on the environment's spectrum.
+HWY_INLINE void environment_image(const Environment& environment, VF u, VF v, const VF lambda_nm[4], VF factor[4]) {
+  const VI x = hn::ConvertTo(IntTag(), hn::Mul(u, splat(static_cast<float>(environment.width))));
+  const VI y = hn::ConvertTo(IntTag(), hn::Mul(v, splat(static_cast<float>(environment.height))));
+  const VI column = hn::Min(x, hn::Set(IntTag(), static_cast<int>(environment.width) - 1));
+  const VI row = hn::Min(y, hn::Set(IntTag(), static_cast<int>(environment.height) - 1));
+  const VI texel = hn::Add(hn::Mul(row, hn::Set(IntTag(), static_cast<int>(environment.width))), column);
+  const VI at = hn::ShiftLeft<2>(texel);
+  const float* texels = environment.texels.data();
+  const VF c0 = gather(texels, at), c1 = gather(texels + 1, at), c2 = gather(texels + 2, at);
+  const VF scale = gather(texels + 3, at);
+  for (int j = 0; j < 4; ++j) factor[j] = hn::Mul(scale, sigmoid_polynomial(c0, c1, c2, lambda_nm[j]));
+}
+
+// Density per solid angle of a world direction, the choice of the light apart.
+HWY_INLINE VF environment_pdf(const Environment& environment, const ImagePoint& point) {
+  if (environment.width == 0) return splat(0.25f * inverse_pi);
+  const VF pdf = square_pdf(environment.density, point.u, point.v);
+  return hn::Div(pdf, hn::Max(point.solid_angle, splat(1e-20f)));
+}
+
+}  // namespace metamer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

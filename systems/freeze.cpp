@@ -1,0 +1,26 @@
+#include "systems/freeze.h"
+
+#include <fmt/format.h>
+
+namespace metamer {
+
+std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
+  auto world = std::make_unique<World>();
+  world->settings = scene.settings;
+  world->spectra = scene.spectra;
+  const Filter& filter = scene.settings.filter;
+  world->filter = make_pixel_filter(filter.kind, filter.radius_x, filter.radius_y, filter.sigma);
+  const std::vector<glm::dmat4> to_world = build_transforms(scene, diagnostics);
+  if (diagnostics.has_errors()) return nullptr;
+  const std::vector<MaterialRow> materials = build_materials(scene, *world);
+  build_geometry(scene, to_world, materials, *world, diagnostics);
+  build_lights(scene, to_world, *world, diagnostics);
+  build_camera(scene, to_world, *world, diagnostics);
+  if (world->zero_area_triangles > 0)
+    diagnostics.warning({}, fmt::format("{} triangles have no area and are never hit", world->zero_area_triangles));
+  if (diagnostics.has_errors()) return nullptr;
+  build_accelerator(*world);
+  return world;
+}
+
+}  // namespace metamer

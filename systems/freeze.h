@@ -1,0 +1,37 @@
+// From entities to the read-only world: the only way into the pipeline.
+#pragma once
+#include <glm/mat4x4.hpp>
+#include <memory>
+#include <span>
+
+#include "engine/ecs/world.h"
+
+namespace metamer {
+
+// Builds the world: transforms, materials by kind, geometry, lights, camera, acceleration structure. Mistakes go to
+// `diagnostics` with the place where the user made them; with errors among them the result is null.
+std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics);
+
+// Object to world of every entity, by entity index. Errors: a cycle of parents, a singular or non-finite matrix.
+std::vector<glm::dmat4> build_transforms(const Scene& scene, Diagnostics& diagnostics);
+
+// Where the Material of an entity went, by entity index.
+struct MaterialRow {
+  ShadeKind kind = ShadeKind::diffuse;
+  uint32_t row = 0;
+};
+std::vector<MaterialRow> build_materials(const Scene& scene, World& world);
+
+// Objects, vertices, quadrics, and the light rows of emitting shapes.
+void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
+                    World& world, Diagnostics& diagnostics);
+
+// Point, directional and environment lights, then the choice among all lights by power.
+void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics);
+
+void build_camera(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics);
+
+// Embree's trees, built on one thread each so that they are the same every time.
+void build_accelerator(World& world);
+
+}  // namespace metamer

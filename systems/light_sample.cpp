@@ -1,0 +1,204 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "systems/light_sample.cpp"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+// Highway's headers come after foreach_target.
+#include "engine/sampling/points-inl.h"
+#include "engine/sampling/warps-inl.h"
+#include "systems/dimensions.h"
+#include "systems/lights-inl.h"
+#include "systems/systems.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace metamer::HWY_NAMESPACE {
+namespace {
+
+// A direction towards a light. pdf is per solid angle without the choice of the light; for point and directional
+// lights it is 0 and `weight` the irradiance per radiance unit they stand for (1 / d^2, 1).
+struct LightSample {
+  Vec3 direction;
+  VF distance, pdf, weight;
+  VF image_u, image_v;  // environment only
+};
+
+// Uniform over the shape's area; works for a reference point anywhere.
+HWY_INLINE void sample_area(const LightFields& light, VU shape, const Vec3& from, VF u, VF v, LightSample& sample) {
+  const VF one = splat(1.0f), zero = hn::Zero(FloatTag());
+  const Vec3 p = light.vector(offsetof(LightRow, p));
+  const Vec3 a = light.vector(offsetof(LightRow, axes)), b = light.vector(offsetof(LightRow, axes) + 12);
+  const BarycentricV corner = sample_uniform_triangle(u, v);
+  Vec3 point = mul_add(a, corner.b1, mul_add(b, corner.b2, p));
+  Vec3 normal = light.vector(offsetof(LightRow, normal));
+  VF pdf_area = hn::Div(one, hn::Max(light.number(offsetof(LightRow, area)), splat(1e-38f)));
+  const MF disk = is_shape(shape, LightShape::disk);
+  if (!hn::AllFalse(FloatTag(), disk)) {
+    const VF inner = light.number(offsetof(LightRow, inner));
+    const VF inner2 = hn::Mul(inner, inner);
+    const VF r = hn::Sqrt(hn::MulAdd(u, hn::Sub(one, inner2), inner2));
+    const SinCos phi = sincos_2pi(v);
+    const Vec3 on_disk = mul_add(a, hn::Mul(r, phi.cos), mul_add(b, hn::Mul(r, phi.sin), p));
+    point = if_then_else(disk, on_disk, point);
+  }
+  const MF round = hn::Or(is_shape(shape, LightShape::sphere), is_shape(shape, LightShape::ellipsoid));
+  if (!hn::AllFalse(FloatTag(), round)) {
+    const Vec3 c = light.vector(offsetof(LightRow, axes) + 24);
+    const Vec3 q = sample_uniform_sphere(u, v);
+    point = if_then_else(round, mul_add(a, q.x, mul_add(b, q.y, mul_add(c, q.z, p))), point);
+    const VF sign = hn::IfThenElse(hn::Lt(dot(cross(a, b), c), zero), splat(-1.0f), one);
+    const Vec3 area = mul_add(cross(b, c), q.x, mul_add(cross(c, a), q.y, cross(a, b) * q.z)) * sign;
+    const Vec3 outside = normalize(area) * light.number(offsetof(LightRow, normal_sign));
+    normal = if_then_else(round, outside, normal);
+    pdf_area = hn::IfThenElse(round, ellipsoid_area_pdf(light, q), pdf_area);
+  }
+  const Vec3 to_light = point - from;
+  const VF distance2 = hn::Max(dot(to_light, to_light), splat(1e-30f));
+  sample.distance = hn::Sqrt(distance2);
+  sample.direction = to_light * hn::Div(one, sample.distance);
+  const VF cos_light = hn::Neg(dot(normal, sample.direction));
+  const MF two_sided = float_mask(hn::Ne(light.word(offsetof(LightRow, two_sided)), splat_u(0)));
+  const MF faces = hn::And(hn::Ne(cos_light, zero), hn::Or(two_sided, hn::Gt(cos_light, zero)));
+  sample.pdf = area_to_solid_angle(pdf_area, distance2, cos_light);
+  sample.weight = hn::IfThenElseZero(faces, hn::Div(one, sample.pdf));
+}
+
+// Uniform in the cone under which a sphere is seen: Shirley, Wang, Zimmerman, "Monte Carlo Techniques for Direct
+// Lighting Calculations", ACM TOG 15(1), 1996. From inside it has no cone: sample_area serves.
+HWY_INLINE void sample_sphere_cone(const LightFields& light, const Vec3& from, VF u, VF v, LightSample& sample) {
+  const VF one = splat(1.0f), zero = hn::Zero(FloatTag());
+  const SphereCone cone = sphere_cone(light, from);
+  const Vec3 in_cone = sample_uniform_cone(u, v, cone.one_minus_cos);
+  const Vec3 direction = to_world(make_frame(cone.axis), in_cone);
+  const VF sin2 = hn::MulAdd(in_cone.x, in_cone.x, hn::Mul(in_cone.y, in_cone.y));
+  const VF half_chord = safe_sqrt(hn::NegMulAdd(cone.distance2, sin2, cone.radius2));
+  const VF distance = hn::MulSub(hn::Sqrt(cone.distance2), in_cone.z, half_chord);
+  // The near side of a sphere that emits inwards is dark.
+  const MF two_sided = float_mask(hn::Ne(light.word(offsetof(LightRow, two_sided)), splat_u(0)));
+  const MF lit = hn::Or(two_sided, hn::Gt(light.number(offsetof(LightRow, normal_sign)), zero));
+  const MF outside = cone.outside;
+  const VF pdf = uniform_cone_pdf(cone.one_minus_cos);
+  sample.direction = if_then_else(outside, direction, sample.direction);
+  sample.distance = hn::IfThenElse(outside, distance, sample.distance);
+  sample.pdf = hn::IfThenElse(outside, pdf, sample.pdf);
+  sample.weight = hn::IfThenElse(outside, hn::IfThenElseZero(lit, hn::Div(one, pdf)), sample.weight);
+}
+
+HWY_INLINE void sample_point_light(const LightFields& light, const Vec3& from, LightSample& sample) {
+  const Vec3 to_light = light.vector(offsetof(LightRow, p)) - from;
+  const VF distance2 = hn::Max(dot(to_light, to_light), splat(1e-30f));
+  sample.distance = hn::Sqrt(distance2);
+  sample.direction = to_light * hn::Div(splat(1.0f), sample.distance);
+  sample.pdf = hn::Zero(FloatTag());
+  sample.weight = hn::Div(splat(1.0f), distance2);
+}
+
+HWY_INLINE void sample_directional(const LightFields& light, LightSample& sample) {
+  sample.direction = light.vector(offsetof(LightRow, p));
+  sample.distance = hn::Inf(FloatTag());
+  sample.pdf = hn::Zero(FloatTag());
+  sample.weight = splat(1.0f);
+}
+
+HWY_INLINE void sample_environment(const Environment& environment, VF u, VF v, LightSample& sample) {
+  Vec3 local;
+  if (environment.width == 0) {
+    local = sample_uniform_sphere(u, v);
+    sample.pdf = splat(uniform_sphere_pdf);
+  } else {
+    VF solid_angle = splat(4 * pi);
+    const SquareSampleV square = sample_square(environment.density, u, v);
+    sample.image_u = square.x;
+    sample.image_v = square.y;
+    local = environment.mapping == ImageMapping::equal_area
+                ? equal_area_direction(sample.image_u, sample.image_v)
+                : latitude_longitude_direction(sample.image_u, sample.image_v, &solid_angle);
+    sample.pdf = hn::Div(square.pdf, hn::Max(solid_angle, splat(1e-20f)));
+  }
+  sample.direction = rotate(environment.to_world, local);
+  sample.distance = hn::Inf(FloatTag());
+  sample.weight = hn::IfThenElseZero(hn::Gt(sample.pdf, hn::Zero(FloatTag())), hn::Div(splat(1.0f), sample.pdf));
+}
+
+HWY_INLINE LightSample select(MF mask, const LightSample& yes, const LightSample& no) {
+  return {if_then_else(mask, yes.direction, no.direction), hn::IfThenElse(mask, yes.distance, no.distance),
+          hn::IfThenElse(mask, yes.pdf, no.pdf),           hn::IfThenElse(mask, yes.weight, no.weight),
+          hn::IfThenElse(mask, yes.image_u, no.image_u),   hn::IfThenElse(mask, yes.image_v, no.image_v)};
+}
+
+HWY_INLINE LightSample sample_light(const World& world, const LightFields& light, const Vec3& from, VF u, VF v) {
+  const FloatTag d;
+  const VU shape = light.word(offsetof(LightRow, shape));
+  LightSample sample{};
+  const MF area = float_mask(hn::Lt(shape, splat_u(static_cast<uint32_t>(LightShape::point))));
+  if (!hn::AllFalse(d, area)) sample_area(light, shape, from, u, v, sample);
+  const MF sphere = is_shape(shape, LightShape::sphere);
+  LightSample other{};
+  if (!hn::AllFalse(d, sphere)) {
+    other = sample;
+    sample_sphere_cone(light, from, u, v, other);
+    sample = select(sphere, other, sample);
+  }
+  const MF point = is_shape(shape, LightShape::point);
+  if (!hn::AllFalse(d, point)) {
+    sample_point_light(light, from, other);
+    sample = select(point, other, sample);
+  }
+  const MF directional = is_shape(shape, LightShape::directional);
+  if (!hn::AllFalse(d, directional)) {
+    sample_directional(light, other);
+    sample = select(directional, other, sample);
+  }
+  const MF environment = is_shape(shape, LightShape::environment);
+  if (!hn::AllFalse(d, environment)) {
+    sample_environment(world.environment, u, v, other);
+    sample = select(environment, other, sample);
+  }
+  return sample;
+}
+
+void light_sample_lanes(const World& world, uint32_t depth, ShadeStream& shade, size_t i) {
+  const PointKey key = {load(shade.pixel_seed, i), load(shade.index, i)};
+  const VF choice = sample_1d(key, splat_u(bounce_dimension(depth, light_choice_dimension)));
+  VF u, v;
+  sample_2d(key, splat_u(bounce_dimension(depth, light_point_dimension)), &u, &v);
+  const LightFields light(world, sample_discrete(world.light_choice, choice).index);
+  const Vec3 from = load(shade.position, i);
+  const LightSample sample = sample_light(world, light, from, u, v);
+  const VF probability = light.number(offsetof(LightRow, choice_probability));
+  VF lambda_nm[4], radiance[4];
+  load(shade.lambda_nm, i, lambda_nm);
+  light_spectrum(world, light, lambda_nm, radiance);
+  if (world.environment.width > 0) {
+    VF factor[4];
+    environment_image(world.environment, sample.image_u, sample.image_v, lambda_nm, factor);
+    const MF image = is_shape(light.word(offsetof(LightRow, shape)), LightShape::environment);
+    for (int j = 0; j < 4; ++j) radiance[j] = hn::IfThenElse(image, hn::Mul(radiance[j], factor[j]), radiance[j]);
+  }
+  const VF weight = hn::Div(sample.weight, probability);
+  for (int j = 0; j < 4; ++j) radiance[j] = hn::Mul(radiance[j], weight);
+  store(sample.direction, shade.light_direction, i);
+  store(sample.distance, shade.light_distance, i);
+  store(radiance, shade.light_radiance, i);
+  store(hn::Mul(sample.pdf, probability), shade.light_pdf, i);
+}
+
+void light_sample_kernel(const World& world, uint32_t depth, ShadeStream& shade) {
+  for (const ShadeKind kind : {ShadeKind::diffuse, ShadeKind::rough_conductor}) {
+    const Group& group = shade.groups[static_cast<size_t>(kind)];
+    for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) light_sample_lanes(world, depth, shade, i);
+  }
+}
+
+}  // namespace
+}  // namespace metamer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace metamer {
+
+HWY_EXPORT(light_sample_kernel);
+
+void light_sample(const World& world, uint32_t depth, ShadeStream& shade) {
+  HWY_DYNAMIC_DISPATCH(light_sample_kernel)(world, depth, shade);
+}
+
+}  // namespace metamer
+#endif

@@ -1,0 +1,112 @@
+// What a light emits and with which density light_sample would have chosen a direction towards it: shared by
+// light_sample and emission, so that the two sides of multiple importance sampling cannot disagree.
+#if defined(METAMER_SYSTEMS_LIGHTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef METAMER_SYSTEMS_LIGHTS_INL_H_
+#undef METAMER_SYSTEMS_LIGHTS_INL_H_
+#else
+#define METAMER_SYSTEMS_LIGHTS_INL_H_
+#endif
+
+#include "engine/sampling/distribution-inl.h"
+#include "engine/sampling/warps-inl.h"
+#include "engine/simd/math-inl.h"
+#include "engine/spectrum/spectrum-inl.h"
+#include "systems/environment-inl.h"
+#include "systems/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace metamer::HWY_NAMESPACE {
+
+// The rows of World::lights as floats, for gathers; `offset` names a field.
+struct LightFields {
+  const float* base;
+  VI row;  // first float of each lane's row
+  HWY_INLINE LightFields(const World& world, VI light)
+      : base(reinterpret_cast<const float*>(world.lights.data())), row(hn::ShiftLeft<5>(light)) {}
+  HWY_INLINE VF number(size_t offset) const { return gather(base + offset / sizeof(float), row); }
+  HWY_INLINE VU word(size_t offset) const { return hn::BitCast(UintTag(), number(offset)); }
+  HWY_INLINE Vec3 vector(size_t offset) const { return gather_vec3(base + offset / sizeof(float), row); }
+};
+
+HWY_INLINE MF is_shape(VU shape, LightShape wanted) {
+  return float_mask(hn::Eq(shape, splat_u(static_cast<uint32_t>(wanted))));
+}
+
+// Veach's power heuristic with exponent 2 for a sample drawn with pdf `a` where `b` could have drawn it, too
+// (Robust Monte Carlo Methods for Light Transport Simulation, 1997, section 9.2.2). In the ratio, so as not to
+// overflow.
+HWY_INLINE VF power_heuristic(VF a, VF b) {
+  const VF ratio = hn::Div(b, a);
+  return hn::Div(splat(1.0f), hn::MulAdd(ratio, ratio, splat(1.0f)));
+}
+
+// Radiance of the lanes' lights (spectrum times scale) at the path's wavelengths; images of the environment apart.
+HWY_INLINE void light_spectrum(const World& world, const LightFields& light, const VF lambda_nm[4], VF out[4]) {
+  eval_spectrum4(world.spectra.view(), light.word(offsetof(LightRow, spectrum)), lambda_nm, out);
+  const VF scale = light.number(offsetof(LightRow, scale));
+  for (int j = 0; j < 4; ++j) out[j] = hn::Mul(out[j], scale);
+}
+
+// The cone under which a sphere is seen from outside.
+struct SphereCone {
+  Vec3 axis;              // unit, to the centre
+  VF distance2, radius2;  // of the centre; of the sphere
+  VF one_minus_cos;       // of the half angle, without cancellation for small spheres
+  MF outside;
+};
+HWY_INLINE SphereCone sphere_cone(const LightFields& light, const Vec3& from) {
+  const VF one = splat(1.0f);
+  const Vec3 to_centre = light.vector(offsetof(LightRow, p)) - from;
+  const Vec3 axis_x = light.vector(offsetof(LightRow, axes));
+  SphereCone cone;
+  cone.radius2 = dot(axis_x, axis_x);
+  cone.distance2 = dot(to_centre, to_centre);
+  cone.outside = hn::Gt(cone.distance2, hn::Mul(cone.radius2, splat(1.0001f)));
+  cone.axis = to_centre * hn::Div(one, hn::Sqrt(hn::Max(cone.distance2, splat(1e-30f))));
+  const VF sin2 = hn::Min(hn::Div(cone.radius2, hn::Max(cone.distance2, splat(1e-30f))), one);
+  cone.one_minus_cos = hn::Max(one_minus_cos(sin2), splat(1e-30f));
+  return cone;
+}
+
+// Density per area of the ellipsoid's points, at a point of it: uniform on the unit sphere it is the image of.
+HWY_INLINE VF ellipsoid_area_pdf(const LightFields& light, const Vec3& unit_point) {
+  const Vec3 a = light.vector(offsetof(LightRow, axes)), b = light.vector(offsetof(LightRow, axes) + 12);
+  const Vec3 c = light.vector(offsetof(LightRow, axes) + 24);
+  // The cofactor matrix maps the unit sphere's normal to the area vector of its image.
+  const Vec3 area = mul_add(cross(b, c), unit_point.x, mul_add(cross(c, a), unit_point.y, cross(a, b) * unit_point.z));
+  return hn::Div(splat(0.25f * inverse_pi), hn::Sqrt(hn::Max(dot(area, area), splat(1e-38f))));
+}
+HWY_INLINE Vec3 ellipsoid_unit_point(const LightFields& light, const Vec3& position) {
+  const Vec3 v = position - light.vector(offsetof(LightRow, p));
+  const size_t inverse = offsetof(LightRow, inverse);
+  const Vec3 q = {dot(light.vector(inverse), v), dot(light.vector(inverse + 12), v),
+                  dot(light.vector(inverse + 24), v)};
+  return normalize(q);
+}
+
+HWY_INLINE VF area_to_solid_angle(VF pdf_area, VF distance2, VF cos_light) {
+  return hn::Div(hn::Mul(pdf_area, distance2), hn::Max(hn::Abs(cos_light), splat(1e-12f)));
+}
+
+// Per solid angle at `from`, with which light_sample chooses the direction to `position` on an area light of that
+// normal, the choice of the light included. direction = (position - from) / distance.
+HWY_INLINE VF area_light_pdf(const LightFields& light, const Vec3& from, const Vec3& position, const Vec3& normal,
+                             const Vec3& direction, VF distance) {
+  const VU shape = light.word(offsetof(LightRow, shape));
+  VF pdf_area = hn::Div(splat(1.0f), hn::Max(light.number(offsetof(LightRow, area)), splat(1e-38f)));
+  const MF ellipsoid = is_shape(shape, LightShape::ellipsoid);
+  if (!hn::AllFalse(FloatTag(), ellipsoid))
+    pdf_area = hn::IfThenElse(ellipsoid, ellipsoid_area_pdf(light, ellipsoid_unit_point(light, position)), pdf_area);
+  VF pdf = area_to_solid_angle(pdf_area, hn::Mul(distance, distance), dot(normal, direction));
+  const MF sphere = is_shape(shape, LightShape::sphere);
+  if (!hn::AllFalse(FloatTag(), sphere)) {
+    const SphereCone cone = sphere_cone(light, from);
+    pdf = hn::IfThenElse(hn::And(sphere, cone.outside), uniform_cone_pdf(cone.one_minus_cos), pdf);
+  }
+  return hn::Mul(pdf, light.number(offsetof(LightRow, choice_probability)));
+}
+
+}  // namespace metamer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

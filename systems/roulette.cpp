@@ -1,0 +1,67 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "systems/roulette.cpp"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+// Highway's headers come after foreach_target.
+#include "systems/shade-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace metamer::HWY_NAMESPACE {
+namespace {
+
+// From the second bounce on a path survives with the probability of its largest throughput (at most 1), the change of
+// radiance by refraction apart: what a path passes through glass and out again is no reason to end it.
+constexpr uint32_t first_roulette_depth = 1;
+
+void roulette_lanes(uint32_t depth, const ShadeStream& shade, size_t i, PathStream& next) {
+  const FloatTag d;
+  const VF zero = hn::Zero(d), one = splat(1.0f);
+  VF throughput[4];
+  for (size_t j = 0; j < 4; ++j) throughput[j] = hn::Mul(load(shade.throughput[j], i), load(shade.next_weight[j], i));
+  const VF eta_scale = hn::Mul(load(shade.eta_scale, i), load(shade.next_eta_scale, i));
+  const VF importance = hn::Mul(max_of(throughput), eta_scale);
+  MF survives = hn::And(is_live(load(shade.slot, i)), hn::Gt(importance, zero));
+  if (depth >= first_roulette_depth) {
+    const VF probability = hn::Min(importance, one);
+    const VF u = sample_1d(point_key(shade, i), splat_u(bounce_dimension(depth, roulette_dimension)));
+    survives = hn::And(survives, hn::Lt(u, probability));
+    const VF compensation = hn::Div(one, hn::Max(probability, splat(1e-30f)));
+    for (VF& t : throughput) t = hn::Mul(t, compensation);
+  }
+  if (hn::AllFalse(d, survives)) return;
+  const Vec3 direction = load(shade.next_direction, i);
+  const size_t at = next.size;
+  append(survives, ray_origin(shade, i, direction), next.origin, at);
+  append(survives, direction, next.direction, at);
+  VF lambda_nm[4];
+  load(shade.lambda_nm, i, lambda_nm);
+  append(survives, lambda_nm, next.lambda_nm, at);
+  append(survives, throughput, next.throughput, at);
+  append(survives, load(shade.next_pdf, i), next.pdf_direction, at);
+  append(survives, eta_scale, next.eta_scale, at);
+  append(survives, load(shade.pixel_seed, i), next.pixel_seed, at);
+  append(survives, load(shade.index, i), next.index, at);
+  append(survives, load(shade.slot, i), next.slot, at);
+  next.size += static_cast<uint32_t>(hn::CountTrue(d, survives));
+}
+
+void roulette_kernel(uint32_t depth, const ShadeStream& shade, PathStream& next) {
+  next.size = 0;
+  const size_t end = group_of(shade, ShadeKind::absorber).begin;
+  for (size_t i = 0; i < end; i += lane_count()) roulette_lanes(depth, shade, i, next);
+}
+
+}  // namespace
+}  // namespace metamer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace metamer {
+
+HWY_EXPORT(roulette_kernel);
+
+void roulette(uint32_t depth, const ShadeStream& shade, PathStream& next) {
+  HWY_DYNAMIC_DISPATCH(roulette_kernel)(depth, shade, next);
+}
+
+}  // namespace metamer
+#endif

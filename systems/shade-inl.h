@@ -1,0 +1,88 @@
+// What the BSDF kernels of all kinds do around their BSDF: the shading frame, the light sample's way into the shadow
+// stream, the next direction's way into the shading stream.
+#if defined(METAMER_SYSTEMS_SHADE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef METAMER_SYSTEMS_SHADE_INL_H_
+#undef METAMER_SYSTEMS_SHADE_INL_H_
+#else
+#define METAMER_SYSTEMS_SHADE_INL_H_
+#endif
+
+#include "engine/sampling/points-inl.h"
+#include "engine/spectrum/spectrum-inl.h"
+#include "systems/bsdf/local-inl.h"
+#include "systems/dimensions.h"
+#include "systems/lanes-inl.h"
+#include "systems/lights-inl.h"
+#include "systems/systems.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace metamer::HWY_NAMESPACE {
+
+// Any frame around the shading normal will do for isotropic materials; anisotropic ones measure along the tangent.
+HWY_INLINE Frame shading_frame(const World& world, const ShadeStream& shade, size_t i) {
+  const Vec3 n = load(shade.shading_normal, i);
+  const Frame any = make_frame(n);
+  if (!world.needs_tangents) return any;
+  const Vec3 tangent = load(shade.tangent, i);
+  const Vec3 across = tangent - n * dot(n, tangent);
+  const VF length2 = dot(across, across);
+  const MF known = hn::Gt(length2, splat(1e-30f));
+  const Vec3 s = across * hn::Div(splat(1.0f), hn::Sqrt(hn::Max(length2, splat(1e-30f))));
+  return {if_then_else(known, s, any.s), if_then_else(known, cross(n, s), any.t), n};
+}
+
+// Where a ray in `direction` starts: off the surface, on the direction's side of it.
+HWY_INLINE Vec3 ray_origin(const ShadeStream& shade, size_t i, const Vec3& direction) {
+  const Vec3 normal = load(shade.normal, i);
+  const VF offset = hn::CopySign(load(shade.offset, i), dot(normal, direction));
+  return mul_add(normal, offset, load(shade.position, i));
+}
+
+// Appends the light sample of lanes that reflect some of it, weighted against the BSDF's chance to have found the
+// light (power heuristic; lights of pdf 0 it cannot find).
+HWY_INLINE void append_shadow_rays(const ShadeStream& shade, size_t i, const VF f_cos[4], VF pdf_bsdf,
+                                   ShadowStream& shadow) {
+  const VF zero = hn::Zero(FloatTag()), one = splat(1.0f);
+  const VF light_pdf = load(shade.light_pdf, i);
+  const VF weight = hn::IfThenElse(hn::Gt(light_pdf, zero), power_heuristic(light_pdf, pdf_bsdf), one);
+  VF contribution[4];
+  for (size_t j = 0; j < 4; ++j)
+    contribution[j] =
+        hn::Mul(hn::Mul(load(shade.throughput[j], i), load(shade.light_radiance[j], i)), hn::Mul(f_cos[j], weight));
+  // Throughput is 0 in dead lanes.
+  const MF counts = hn::And(is_live(load(shade.slot, i)), hn::Gt(max_of(contribution), zero));
+  const Vec3 direction = load(shade.light_direction, i);
+  // Ends short of the light by as much as float leaves uncertain about where it is.
+  const VF t_far = hn::Mul(load(shade.light_distance, i), splat(0.9999f));
+  append(counts, ray_origin(shade, i, direction), shadow.origin, shadow.size);
+  append(counts, direction, shadow.direction, shadow.size);
+  append(counts, t_far, shadow.t_far, shadow.size);
+  append(counts, contribution, shadow.contribution, shadow.size);
+  append(counts, load(shade.slot, i), shadow.slot, shadow.size);
+  shadow.size += static_cast<uint32_t>(hn::CountTrue(FloatTag(), counts));
+}
+
+// The next direction, in world space; `pdf` 0 for a delta lobe.
+HWY_INLINE void store_next(const Frame& frame, const Vec3& wi, const VF weight[4], VF pdf, ShadeStream& shade,
+                           size_t i) {
+  store(to_world(frame, wi), shade.next_direction, i);
+  store(weight, shade.next_weight, i);
+  store(pdf, shade.next_pdf, i);
+}
+
+HWY_INLINE const Group& group_of(const ShadeStream& shade, ShadeKind kind) {
+  return shade.groups[static_cast<size_t>(kind)];
+}
+HWY_INLINE PointKey point_key(const ShadeStream& shade, size_t i) {
+  return {load(shade.pixel_seed, i), load(shade.index, i)};
+}
+// The material row of live lanes, 0 in dead ones.
+HWY_INLINE VI material_row(const ShadeStream& shade, size_t i) {
+  const auto live = hn::Ne(load(shade.slot, i), splat_u(dead_lane));
+  return as_index(hn::IfThenElseZero(live, load(shade.material, i)));
+}
+
+}  // namespace metamer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

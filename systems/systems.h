@@ -1,0 +1,80 @@
+// The stages of the pipeline in their order; each is one free function in the file of its name. A signature is a
+// contract: const columns in, mutable columns out, nothing else is touched. pipeline.cpp knows the order.
+#pragma once
+#include <span>
+
+#include "engine/ecs/world.h"
+#include "engine/film/film.h"
+#include "engine/schedule/tiles.h"
+#include "engine/streams.h"
+
+namespace metamer {
+
+// An aligned 4x4 block of pixels at one sample index: sixteen camera rays that are always traced together, whatever
+// the tile or the crop, because Embree's packets are not independent of their lanes to the last bit.
+struct RayPacket {
+  uint32_t x, y;  // of the upper left pixel; multiples of 4
+  uint32_t sample;
+};
+
+// Seconds a worker spent, by system and inside Embree, and rays by kind.
+enum class SystemId : uint32_t {
+  camera_rays,
+  intersect,
+  sort,
+  surface,
+  emission,
+  light_sample,
+  shade,
+  shadow,
+  roulette,
+  accumulate
+};
+inline constexpr size_t system_count = 10;
+struct Counters {
+  double seconds[system_count] = {};
+  double embree_seconds = 0;
+  uint64_t samples = 0, camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
+  uint64_t lanes = 0, live_lanes = 0;  // of the shading streams
+  uint64_t invalid_samples = 0;
+  void add(const Counters& other);
+};
+
+// Starts a path per pixel and sample: place on the film by the pixel filter, wavelengths, lens. Sixteen lanes per
+// packet; pixels outside the tile get slots without a pixel.
+void camera_rays(const World& world, std::span<const RayPacket> packets, const TileRect& tile, PathStream& paths,
+                 Slots& slots);
+
+// The first object each ray meets. Camera rays go as packets of sixteen, others one by one.
+void intersect_camera(const World& world, const PathStream& paths, HitStream& hits, double* embree_seconds);
+void intersect_bounce(const World& world, const PathStream& paths, HitStream& hits, double* embree_seconds);
+
+// Sorts the hits by kind: order[lane] is the path, dead_lane in the padding between groups.
+void sort_hits(const World& world, uint32_t size, const HitStream& hits, uint32_t* order, Groups& groups);
+
+// Position, normals and how far new rays must keep off the surface; carries the paths' columns along in sorted order.
+void surface(const World& world, const PathStream& paths, const HitStream& hits, const uint32_t* order,
+             ShadeStream& shade);
+
+// Light that the rays ran into, weighted against having been sampled (power heuristic).
+void emission(const World& world, const ShadeStream& shade, Slots& slots);
+
+// Chooses a light for each lane whose BSDF is not a delta, and a direction towards it.
+void light_sample(const World& world, uint32_t depth, ShadeStream& shade);
+
+// BSDF kernels by kind: weigh the light sample (appended to `shadow` unless 0) and draw the next direction.
+void shade_diffuse(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow);
+void shade_rough_conductor(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow);
+void shade_smooth_conductor(const World& world, ShadeStream& shade);
+void shade_dielectric(const World& world, uint32_t depth, ShadeStream& shade);
+
+// Adds the contributions whose light is in sight.
+void shadow(const World& world, const ShadowStream& shadow, Slots& slots, double* embree_seconds);
+
+// Ends paths that carry little, without bias, and makes the rays of the others.
+void roulette(uint32_t depth, const ShadeStream& shade, PathStream& next);
+
+// Radiances to XYZ, into the tile's exact sums.
+void accumulate(const World& world, Slots& slots, TileFilm& film);
+
+}  // namespace metamer
