@@ -12,6 +12,8 @@ namespace {
 
 constexpr size_t most_mistakes = 1000;  // reading stops here: the file is probably not a pbrt file
 
+constexpr size_t most_attributes = 256;  // blocks copy them
+
 // Where a directive may stand.
 enum class Where : uint8_t { anywhere, before_world, in_world };
 
@@ -24,7 +26,7 @@ struct Directive {
 // A directive of the form: Name "kind" parameters. Calls read(kind, parameters).
 template <class F>
 void read_with_parameters(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source,
-                          const ParameterList& defaults, F&& read) {
+                          const ParameterPointers& defaults, F&& read) {
   const auto kind = read_string(reader, tokens, directive, source);
   if (!kind) return;
   const ParameterList list = parse_parameters(tokens, source.file, reader.state.color_space);
@@ -126,11 +128,15 @@ void attribute(Reader& reader, Tokenizer& tokens, std::string_view directive, So
         source, fmt::format("Attribute expects shape, light, material, medium or texture, not \"{}\"{}", *name,
                             did_you_mean(*name, attribute_targets)));
   }
-  // The latest word on a parameter counts.
-  ParameterList& all = reader.state.attributes[found - std::begin(attribute_targets)];
-  for (const Parameter& parameter : list)
-    std::erase_if(all, [&](const Parameter& old) { return old.name == parameter.name; });
-  all.insert(all.end(), std::make_move_iterator(list.begin()), std::make_move_iterator(list.end()));
+  ParameterPointers& all = reader.state.attributes[found - std::begin(attribute_targets)];
+  for (Parameter& parameter : list) {
+    // The latest word on a parameter counts.
+    std::erase_if(all, [&](const Parameter* old) { return old->name == parameter.name; });
+    all.push_back(&reader.attribute_values.emplace_back(std::move(parameter)));
+  }
+  if (all.size() <= most_attributes) return;
+  reader.messages.error(source, fmt::format("more than {} attributes are set", most_attributes));
+  all.resize(most_attributes);
 }
 
 void color_space(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {

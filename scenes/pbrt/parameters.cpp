@@ -142,7 +142,7 @@ ParameterList parse_parameters(Tokenizer& tokens, NameId file, ColorSpace color_
   return list;
 }
 
-Parameters::Parameters(std::string what, Source source, const ParameterList& list, const ParameterList& defaults,
+Parameters::Parameters(std::string what, Source source, const ParameterList& list, const ParameterPointers& defaults,
                        Messages& messages)
     : what_(std::move(what)), source_(source), list_(list), defaults_(defaults), messages_(messages) {
   used_.resize(list.size());
@@ -161,7 +161,7 @@ const Parameter* Parameters::lookup(std::string_view name) {
     used_[i] = true;
   }
   for (size_t i = 0; first == nullptr && i < defaults_.size(); ++i) {
-    if (defaults_[i].name == name) first = &defaults_[i];
+    if (defaults_[i]->name == name) first = defaults_[i];
   }
   return first;
 }
@@ -180,8 +180,8 @@ const Parameter* Parameters::find(std::string_view name, std::span<const Paramet
 }
 
 bool Parameters::has(std::string_view name) const {
-  const auto named = [&](const Parameter& parameter) { return parameter.name == name; };
-  return std::any_of(list_.begin(), list_.end(), named) || std::any_of(defaults_.begin(), defaults_.end(), named);
+  return std::any_of(list_.begin(), list_.end(), [&](const Parameter& p) { return p.name == name; }) ||
+         std::any_of(defaults_.begin(), defaults_.end(), [&](const Parameter* p) { return p->name == name; });
 }
 
 void Parameters::error(std::string_view name, std::string message) {

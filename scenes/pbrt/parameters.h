@@ -40,6 +40,7 @@ struct Parameter {
 };
 
 using ParameterList = std::vector<Parameter>;
+using ParameterPointers = std::vector<const Parameter*>;
 
 // Messages about a file under way, some of them said once only.
 struct Messages {
@@ -70,7 +71,7 @@ ParameterList parse_parameters(Tokenizer& tokens, NameId file, ColorSpace color_
 class Parameters {
  public:
   // `what` is how messages call the directive: `Shape "sphere"`.
-  Parameters(std::string what, Source source, const ParameterList& list, const ParameterList& defaults,
+  Parameters(std::string what, Source source, const ParameterList& list, const ParameterPointers& defaults,
              Messages& messages);
 
   // Null if absent, broken, or of another type (which is reported). `types` is not empty.
@@ -108,7 +109,7 @@ class Parameters {
   std::string what_;
   Source source_;
   const ParameterList& list_;
-  const ParameterList& defaults_;
+  const ParameterPointers& defaults_;
   Messages& messages_;
   std::vector<bool> used_;
   std::vector<std::string> asked_;

@@ -1,6 +1,7 @@
 // The state of reading a pbrt file, and the directives' parts. Free functions over one struct: each file here adds to
 // the scene what it knows about.
 #pragma once
+#include <deque>
 #include <filesystem>
 #include <glm/mat4x4.hpp>
 #include <map>
@@ -35,7 +36,7 @@ struct GraphicsState {
   ColorSpace color_space = ColorSpace::srgb;
   Entity material;
   AreaLight area_light;
-  ParameterList attributes[std::size(attribute_targets)];
+  ParameterPointers attributes[std::size(attribute_targets)];  // into Reader::attribute_values; no name twice
 };
 
 enum class Block : uint8_t { attribute, transform, object, import };
@@ -72,6 +73,7 @@ struct Reader {
   std::filesystem::path folder;  // of the first file: names in all files are relative to it
   NameId file = no_index;        // being read
 
+  std::deque<Parameter> attribute_values = {};  // their addresses stay
   GraphicsState state = {};
   std::vector<SavedState> stack = {};
   bool in_world = false;
@@ -90,7 +92,7 @@ struct Reader {
   size_t files_read = 0;
   bool gave_up = false;  // too many mistakes
 
-  const ParameterList& attributes(AttributeTarget target) const {
+  const ParameterPointers& attributes(AttributeTarget target) const {
     return state.attributes[static_cast<size_t>(target)];
   }
   std::string resolve(const std::string& name) const;

@@ -73,7 +73,7 @@ TEST(PbrtFiles, AFanOfIncludesIsCut) {
   for (int i = 0; i < 40; ++i) {
     std::string twice;
     for (int k = 0; k < 2; ++k) twice.append("Include \"f").append(std::to_string(i + 1)).append("\" ");
-    folder.write("f" + std::to_string(i), twice);
+    folder.write(std::string("f").append(std::to_string(i)), twice);
   }
   folder.write("f40", "");
   const ReadScene read = read_scene_at(folder.write("scene", "WorldBegin Include \"f0\""));

@@ -251,6 +251,15 @@ TEST(PbrtMistakesInOneGo, WithoutWorldBeginNothingIsRendered) {
               testing::ElementsAre("scene: error: there is no WorldBegin, so there is nothing to render"));
 }
 
+TEST(PbrtMistakesInOneGo, TooManyAttributesAreAnErrorAsBlocksCopyThem) {
+  std::string world;
+  for (int i = 0; i < 300; ++i)
+    world.append("Attribute \"shape\" \"float p").append(std::to_string(i)).append("\" 1\n");
+  const ReadScene read = read_world(world);
+  EXPECT_EQ(read.diagnostics.error_count(), 300u - 256u);
+  EXPECT_EQ(read.messages[0], "scene:258: error: more than 256 attributes are set");
+}
+
 TEST(PbrtMistakesInOneGo, Version3sBlocksAreExplained) {
   const ReadScene read = read_world("TransformBegin Translate 1 0 0 TransformEnd\nWorldEnd");
   EXPECT_TRUE(read.ok);
