@@ -1,1 +1,63 @@
-int main() { return 0; }
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <string>
+
+#include "engine/simd/instruction_set.h"
+#include "scenes/program/commands.h"
+#include "scenes/program/failure.h"
+
+namespace metamer {
+namespace {
+
+// Every line of a message says whose it is.
+void print_error(const std::string& message) {
+  size_t begin = 0;
+  while (begin < message.size()) {
+    const size_t end = std::min(message.find('\n', begin), message.size());
+    std::fprintf(stderr, "metamer: error: %.*s\n", static_cast<int>(end - begin), message.data() + begin);
+    begin = end + 1;
+  }
+}
+
+int run(const Command& command, std::chrono::steady_clock::time_point start) {
+  if (const auto* text = std::get_if<ShowText>(&command)) {
+    std::fputs(text->text.c_str(), stdout);
+    return exit_done;
+  }
+  if (const std::string error = apply_isa_environment(); !error.empty()) throw Failure(exit_wrong_input, error);
+  if (const auto* render = std::get_if<RenderArguments>(&command)) return run_render(*render, start);
+  if (const auto* info = std::get_if<InfoArguments>(&command)) return run_info(*info);
+  return run_version();
+}
+
+// What was printed has to have arrived, unless the reader did not want more.
+int finish(int code) {
+  errno = 0;
+  if ((std::fflush(stdout) == 0 && std::ferror(stdout) == 0) || errno == EPIPE) return code;
+  print_error(std::string("standard output cannot be written: ") + std::strerror(errno));
+  return code == exit_done ? exit_failed : code;
+}
+
+int run_program(int argc, char** argv, std::chrono::steady_clock::time_point start) {
+  try {
+    return finish(run(parse_command_line(argc, argv), start));
+  } catch (const Failure& failure) {
+    print_error(failure.what());
+    return failure.code();
+  } catch (const std::bad_alloc&) {
+    print_error("out of memory");
+  } catch (const std::exception& error) {
+    print_error(error.what());
+  }
+  return exit_failed;
+}
+
+}  // namespace
+}  // namespace metamer
+
+int main(int argc, char** argv) { return metamer::run_program(argc, argv, std::chrono::steady_clock::now()); }

@@ -1,0 +1,198 @@
+#include "scenes/program/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+
+#include "engine/diagnostics.h"
+#include "engine/film/film.h"
+#include "scenes/program/failure.h"
+#include "scenes/program/values.h"
+
+namespace metamer {
+namespace {
+
+constexpr uint32_t most_threads = 1024;
+constexpr uint32_t largest_tile = 1024;     // pixels: beyond, a thread's own sums would no longer be small
+constexpr uint32_t deepest_path = 65535;    // scattering events
+constexpr float largest_exposure = 100.0f;  // stops: what tone mapping takes
+
+constexpr const char* main_footer = R"(Examples:
+  metamer render                                   the default scene
+  metamer render cornell-box/scene.pbrt --spp 64   writes cornell-box.exr and cornell-box.png here
+  metamer info kitchen.json
+  metamer render --help                            all flags of a command
+
+METAMER_ISA=sse4, avx2 or avx512 chooses another instruction set than the best.
+Exit codes: 0 done, 1 could not do it or was interrupted, 2 wrong usage or wrong scene.)";
+
+constexpr const char* render_footer =
+    R"(Flags override what the scene says. Without -o and --png the pictures are named after the scene and
+written to the current folder; with one of the two the other picture is written beside it. Ctrl-C writes
+what was rendered so far (exit code 1), a second one stops at once.
+
+Examples:
+  metamer render cornell-box/scene.pbrt
+  metamer render prism.json -o /tmp/prism.exr --size 1920x1080 --spp 1024
+  metamer render prism.json --size 320x180 --spp 16 --exposure +1.5 --stats prism-stats.json --quiet)";
+
+constexpr const char* info_footer = R"(Examples:
+  metamer info kitchen/scene.pbrt
+  metamer info prism.json --json)";
+
+// Flags as text, the way they were written.
+struct RenderTexts {
+  std::string samples_per_pixel, size, threads, tile, seed, max_depth, exposure;
+};
+
+void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
+  CLI::App* render = app.add_subcommand("render", "Render a scene to an EXR and a PNG");
+  render->footer(render_footer);
+  render->add_option("SCENE", arguments.scene, "pbrt-v4 or metamer JSON file; without one, the default scene")
+      ->type_name("");
+  const auto option = [&](const std::string& name, std::string& value, const char* type, const std::string& text) {
+    render->add_option(name, value, text)->type_name(type)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  };
+  option("-o,--output", arguments.exr, "OUT.exr", "Linear EXR, sRGB primaries, 1 = white of 1 cd/m^2");
+  option("--png", arguments.png, "OUT.png", "PNG, 8 bit, sRGB");
+  option("--spp", texts.samples_per_pixel, "N", "Samples per pixel");
+  option("--size", texts.size, "WxH", "Width and height in pixels");
+  option("--threads", texts.threads, "N", "Threads; all that there are if not given");
+  option("--tile", texts.tile, "N", "Side of a tile in pixels, 32 if not given; changes no pixel");
+  option("--seed", texts.seed, "N", "Another seed, another noise");
+  option("--max-depth", texts.max_depth, "N", "Scattering events on a path; 0 shows only what emits");
+  option("--exposure", texts.exposure, "STOPS", "Brightens the PNG by powers of 2; the EXR stays as it is");
+  option("--stats", arguments.stats, "STATS.json", "Write times, rays and memory there");
+  render->add_flag("--preview-only", arguments.preview_only, "Leave the film's exact sums out of the EXR");
+  render->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");
+}
+
+void add_info(CLI::App& app, InfoArguments& arguments) {
+  CLI::App* info = app.add_subcommand("info", "Say what is in a scene");
+  info->footer(info_footer);
+  info->add_option("SCENE", arguments.scene, "pbrt-v4 or metamer JSON file; without one, the default scene")
+      ->type_name("");
+  info->add_flag("--json", arguments.json, "Print JSON");
+}
+
+std::vector<std::string> flags_of(const CLI::App& app) {
+  std::vector<std::string> flags;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_snames()) flags.push_back(fmt::format("-{}", name));
+    for (const std::string& name : option->get_lnames()) flags.push_back(fmt::format("--{}", name));
+  }
+  return flags;
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
+  return did_you_mean(word, std::vector<std::string_view>(candidates.begin(), candidates.end()));
+}
+
+std::string unknown_command(const std::string& word) {
+  return fmt::format("unknown command '{}'{}; there are render and info", word,
+                     word.find('.') != std::string::npos ? fmt::format(" (did you mean 'metamer render {}'?)", word)
+                                                         : suggestion(word, {"render", "info"}));
+}
+
+// What no flag, scene or command took. After an unknown flag other words are no mistakes of their own: any of them may
+// have been meant as its value.
+void note_extras(const CLI::App& app, const CLI::App* command, Mistakes& mistakes) {
+  const CLI::App& parsed = command != nullptr ? *command : app;
+  std::string unexpected;
+  bool has_unknown_flag = false;
+  for (const std::string& word : parsed.remaining()) {
+    if (word.size() < 2 || word[0] != '-') {
+      if (unexpected.empty()) unexpected = word;
+    } else if (word != "--") {
+      const std::string flag = word.substr(0, word.find('='));
+      mistakes.push_back(fmt::format("unknown flag '{}'{}", flag, suggestion(flag, flags_of(parsed))));
+      has_unknown_flag = true;
+    }
+  }
+  if (has_unknown_flag || unexpected.empty()) return;
+  if (command == nullptr)
+    mistakes.push_back(unknown_command(unexpected));
+  else
+    mistakes.push_back(fmt::format("unexpected argument '{}': one scene at a time, and '{}' was named already",
+                                   unexpected, command->get_option("SCENE")->as<std::string>()));
+}
+
+SceneOverrides parse_overrides(const CLI::App& render, const RenderTexts& texts, Mistakes& mistakes) {
+  SceneOverrides overrides;
+  const auto given = [&](const char* flag) { return render.count(flag) > 0; };
+  if (given("--size"))
+    if (const auto size = parse_size("--size", texts.size, mistakes)) {
+      overrides.width = size->first;
+      overrides.height = size->second;
+    }
+  if (given("--spp"))
+    overrides.samples_per_pixel = parse_count("--spp", texts.samples_per_pixel, 1, max_samples_per_pixel, mistakes);
+  if (given("--max-depth"))
+    overrides.max_depth = parse_count("--max-depth", texts.max_depth, 0, deepest_path, mistakes);
+  if (given("--seed")) overrides.seed = parse_count("--seed", texts.seed, 0, 0xffffffffu, mistakes);
+  if (given("--exposure"))
+    overrides.exposure_stops = parse_real("--exposure", texts.exposure, -largest_exposure, largest_exposure, mistakes);
+  return overrides;
+}
+
+void parse_render(const CLI::App& render, const RenderTexts& texts, RenderArguments& arguments, Mistakes& mistakes) {
+  arguments.overrides = parse_overrides(render, texts, mistakes);
+  if (render.count("--threads") > 0)
+    arguments.threads = parse_count("--threads", texts.threads, 1, most_threads, mistakes).value_or(0);
+  if (render.count("--tile") > 0)
+    arguments.tile_size = parse_count("--tile", texts.tile, 1, largest_tile, mistakes).value_or(1);
+  const std::array<std::pair<const char*, const std::string*>, 3> names = {
+      {{"--output", &arguments.exr}, {"--png", &arguments.png}, {"--stats", &arguments.stats}}};
+  for (const auto& [flag, name] : names)
+    if (render.count(flag) > 0 && name->empty()) mistakes.push_back(fmt::format("{}: the file's name is empty", flag));
+  if (render.count("SCENE") > 0 && arguments.scene.empty()) mistakes.push_back("the scene's name is empty");
+}
+
+void fail_if_any(const Mistakes& mistakes) {
+  if (!mistakes.empty()) throw Failure(exit_wrong_input, fmt::format("{}", fmt::join(mistakes, "\n")));
+}
+
+}  // namespace
+
+Command parse_command_line(int argc, char** argv) {
+  CLI::App app("metamer, a spectral renderer", "metamer");
+  app.footer(main_footer);
+  app.require_subcommand(0, 1);
+  app.allow_extras();
+  app.get_formatter()->column_width(28);
+  bool wants_version = false;
+  app.add_flag("--version", wants_version, "Version, libraries and instruction sets");
+  RenderArguments render_arguments;
+  RenderTexts render_texts;
+  InfoArguments info_arguments;
+  add_render(app, render_arguments, render_texts);
+  add_info(app, info_arguments);
+  for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    return ShowText{app.help()};
+  } catch (const CLI::ArgumentMismatch& error) {
+    const std::string what = error.what();
+    throw Failure(exit_wrong_input, fmt::format("{}: a value was expected after it", what.substr(0, what.find(':'))));
+  } catch (const CLI::ParseError& error) {
+    throw Failure(exit_wrong_input, error.what());
+  }
+
+  const std::vector<CLI::App*> commands = app.get_subcommands();
+  const CLI::App* command = commands.empty() ? nullptr : commands.front();
+  Mistakes mistakes;
+  note_extras(app, command, mistakes);
+  if (command != nullptr) note_extras(app, nullptr, mistakes);  // flags before the command
+  if (command != nullptr && command->get_name() == "render")
+    parse_render(*command, render_texts, render_arguments, mistakes);
+  fail_if_any(mistakes);
+  if (wants_version) return ShowVersion{};
+  if (command == nullptr)
+    throw Failure(exit_wrong_input, "a command was expected: render or info (metamer --help says more)");
+  if (command->get_name() == "render") return render_arguments;
+  return info_arguments;
+}
+
+}  // namespace metamer

@@ -1,0 +1,44 @@
+// What the user asked for: the arguments, checked as far as they can be without a scene.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace metamer {
+
+// Flags that replace what the scene says.
+struct SceneOverrides {
+  std::optional<uint32_t> width, height;  // pixels; both or neither
+  std::optional<uint32_t> samples_per_pixel, max_depth, seed;
+  std::optional<float> exposure_stops;
+};
+
+struct RenderArguments {
+  std::string scene;            // empty: the default scene
+  std::string exr, png, stats;  // as given; empty: not given
+  SceneOverrides overrides;
+  uint32_t threads = 0;     // 0: all
+  uint32_t tile_size = 32;  // pixels
+  bool preview_only = false;
+  bool quiet = false;
+};
+
+struct InfoArguments {
+  std::string scene;
+  bool json = false;
+};
+
+struct ShowVersion {};
+
+// Help that was asked for.
+struct ShowText {
+  std::string text;
+};
+
+using Command = std::variant<RenderArguments, InfoArguments, ShowVersion, ShowText>;
+
+// Throws Failure (exit 2) with a line for each mistake.
+Command parse_command_line(int argc, char** argv);
+
+}  // namespace metamer

@@ -1,0 +1,87 @@
+#include "scenes/program/load.h"
+
+#include <chrono>
+#include <cstdio>
+
+#include "scenes/program/failure.h"
+#include "scenes/read_scene.h"
+#include "systems/freeze.h"
+
+namespace metamer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// Remarks that belong to no file are about the scene as a whole.
+void print_diagnostics(const Diagnostics& diagnostics, const std::string& path) {
+  Diagnostics placed;
+  for (const Diagnostic& d : diagnostics.all()) {
+    const SourceLocation at{d.file.empty() ? path : d.file, d.line};
+    switch (d.severity) {
+      case Severity::note: placed.note(at, d.message); break;
+      case Severity::warning: placed.warning(at, d.message); break;
+      case Severity::error: placed.error(at, d.message); break;
+    }
+  }
+  std::fputs(format_diagnostics(placed).c_str(), stderr);
+}
+
+void apply(const SceneOverrides& overrides, RenderSettings& settings) {
+  settings.width = overrides.width.value_or(settings.width);
+  settings.height = overrides.height.value_or(settings.height);
+  settings.samples_per_pixel = overrides.samples_per_pixel.value_or(settings.samples_per_pixel);
+  settings.max_depth = overrides.max_depth.value_or(settings.max_depth);
+  settings.seed = overrides.seed.value_or(settings.seed);
+  settings.exposure_stops = overrides.exposure_stops.value_or(settings.exposure_stops);
+}
+
+template <class... Columns>
+size_t bytes_of(const Columns&... columns) {
+  return (size_t{0} + ... + columns.bytes());
+}
+
+}  // namespace
+
+LoadedScene load_scene(const std::string& path, const SceneOverrides& overrides, bool quiet) {
+  const Clock::time_point start = Clock::now();
+  LoadedScene loaded;
+  const bool is_good = read_scene(path, loaded.scene, loaded.diagnostics);
+  if (!is_good || loaded.diagnostics.has_errors()) {
+    print_diagnostics(loaded.diagnostics, path);
+    throw Failure(exit_wrong_input, "");
+  }
+  if (!quiet) print_diagnostics(loaded.diagnostics, path);
+  apply(overrides, loaded.scene.settings);
+  loaded.seconds = seconds_since(start);
+  return loaded;
+}
+
+BuiltWorld build_world(const LoadedScene& loaded, const std::string& path, bool quiet) {
+  const Clock::time_point start = Clock::now();
+  BuiltWorld built;
+  built.world = freeze(loaded.scene, built.diagnostics);
+  if (built.world == nullptr || built.diagnostics.has_errors()) {
+    print_diagnostics(built.diagnostics, path);
+    throw Failure(exit_wrong_input, "");
+  }
+  if (!quiet) print_diagnostics(built.diagnostics, path);
+  built.seconds = seconds_since(start);
+  return built;
+}
+
+size_t world_bytes(const World& world) {
+  const ObjectColumns& o = world.objects;
+  const Environment& e = world.environment;
+  return bytes_of(o.kind, o.first_triangle, o.triangle_count, o.shade_kind, o.material, o.first_light, o.placement,
+                  o.visibility, o.entity) +
+         bytes_of(world.positions, world.normals, world.uvs, world.triangle_vertices, world.placements) +
+         bytes_of(world.diffuse.reflectance, world.conductor.eta, world.conductor.kappa, world.conductor.alpha_x,
+                  world.conductor.alpha_y, world.conductor.schlick, world.dielectric.eta, world.dielectric.schlick,
+                  world.dielectric.dispersive) +
+         bytes_of(world.lights, world.light_choice.cdf, e.texels, e.density.marginal, e.density.conditional,
+                  world.spectra);
+}
+
+}  // namespace metamer

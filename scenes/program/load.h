@@ -1,0 +1,33 @@
+// From a path to the world, with everything said about it printed.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "engine/ecs/scene.h"
+#include "engine/ecs/world.h"
+#include "scenes/program/command_line.h"
+
+namespace metamer {
+
+struct LoadedScene {
+  Scene scene;
+  Diagnostics diagnostics;
+  double seconds = 0;
+};
+
+// Reads a scene and applies the flags. Throws Failure (exit 2) where there are errors, after printing them.
+LoadedScene load_scene(const std::string& path, const SceneOverrides& overrides, bool quiet);
+
+struct BuiltWorld {
+  std::unique_ptr<World> world;
+  Diagnostics diagnostics;
+  double seconds = 0;
+};
+
+// Freezes a scene that was read from `path`. Throws and prints as load_scene; prints warnings unless quiet.
+BuiltWorld build_world(const LoadedScene& loaded, const std::string& path, bool quiet);
+
+// Memory held by the columns of a world; Embree's trees are not among them.
+size_t world_bytes(const World& world);
+
+}  // namespace metamer

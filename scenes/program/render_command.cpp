@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <optional>
+
+#include "engine/simd/instruction_set.h"
+#include "engine/spectrum/color.h"
+#include "scenes/library.h"
+#include "scenes/program/commands.h"
+#include "scenes/program/failure.h"
+#include "scenes/program/load.h"
+#include "scenes/program/outputs.h"
+#include "scenes/program/progress.h"
+#include "scenes/program/signals.h"
+#include "scenes/program/stats.h"
+#include "systems/write_frame.h"
+
+namespace metamer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Read by the signal handlers, so it lives as long as the program.
+Cancellation cancellation;
+
+std::string_view filter_name(FilterKind kind) {
+  switch (kind) {
+    case FilterKind::box: return "box";
+    case FilterKind::triangle: return "triangle";
+    case FilterKind::gaussian: break;
+  }
+  return "gaussian";
+}
+
+// What the files say about the frame: nothing that depends on the machine, the threads or the time.
+WriteSettings write_settings(const RenderArguments& arguments, const Outputs& outputs, const std::string& title,
+                             const RenderSettings& settings) {
+  WriteSettings write;
+  write.exr_path = outputs.exr;
+  write.png_path = outputs.png;
+  const Matrix3& matrix = xyz_to_rgb(ColorSpace::srgb);
+  for (size_t row = 0; row < 3; ++row)
+    for (size_t column = 0; column < 3; ++column)
+      write.xyz_to_rgb[row][column] = static_cast<float>(matrix[row][column]);
+  const std::array<double, 2> white = chromaticity(white_xyz(ColorSpace::srgb));
+  write.header.chromaticities.white = {static_cast<float>(white[0]), static_cast<float>(white[1])};
+  write.header.software = "metamer " METAMER_VERSION;
+  write.header.scene = title;
+  write.header.seed = settings.seed;
+  write.header.settings = {{"samples_per_pixel", std::to_string(settings.samples_per_pixel)},
+                           {"max_depth", std::to_string(settings.max_depth)},
+                           {"filter", std::string(filter_name(settings.filter.kind))}};
+  write.tone.exposure_stops = settings.exposure_stops;
+  write.checkpoint = !arguments.preview_only;
+  return write;
+}
+
+std::string samples_text(const SampleTotals& samples) {
+  return samples.fewest == samples.most ? fmt::format("{}", samples.most)
+                                        : fmt::format("{} to {}", samples.fewest, samples.most);
+}
+
+void tell_result(const FrameReport& report, bool quiet) {
+  const RenderSettings& settings = report.settings;
+  if (report.is_interrupted)
+    fmt::print(stderr, "metamer: interrupted with {} of {} samples per pixel{}\n", samples_text(report.samples),
+               settings.samples_per_pixel, report.samples.fewest == 0 ? "; pixels without any are black" : "");
+  if (quiet) return;
+  if (report.invalid_samples > 0)
+    fmt::print(stderr, "metamer: warning: {} samples were not finite and count as black\n", report.invalid_samples);
+  const double seconds = report.render.render_seconds;
+  fmt::print(stderr, "metamer: {}x{}, {} samples per pixel in {} on {} thread{} ({} samples/s)\n", settings.width,
+             settings.height, samples_text(report.samples), short_time(seconds), report.render.threads,
+             report.render.threads == 1 ? "" : "s",
+             short_count(seconds > 0 ? static_cast<double>(report.samples.total) / seconds : 0));
+}
+
+void tell_files(const Outputs& outputs) {
+  fmt::print("EXR   {}\nPNG   {}\n", outputs.exr, outputs.png);
+  if (!outputs.stats.empty()) fmt::print("stats {}\n", outputs.stats);
+}
+
+// Reads and builds; what was read is given back before the first ray.
+std::unique_ptr<World> make_world(const RenderArguments& arguments, const std::string& path, FrameReport& report) {
+  const LoadedScene loaded = load_scene(path, arguments.overrides, arguments.quiet);
+  const RenderSettings& settings = loaded.scene.settings;
+  if (const std::optional<std::string> mistake = check_frame_size(settings.width, settings.height))
+    throw Failure(exit_wrong_input, (arguments.overrides.width ? "--size: " : path + ": ") + *mistake);
+  BuiltWorld built = build_world(loaded, path, arguments.quiet);
+  report.load_seconds = loaded.seconds;
+  report.build_seconds = built.seconds;
+  return std::move(built.world);
+}
+
+void trace(const RenderArguments& arguments, const World& world, Film& film, FrameReport& report,
+           Clock::time_point program_start) {
+  RenderProgress progress;
+  std::optional<ProgressReport> shown;
+  if (!arguments.quiet) shown.emplace(progress, cancellation);
+  const double started_seconds = std::chrono::duration<double>(Clock::now() - program_start).count();
+  report.render = render(world, {arguments.threads, arguments.tile_size}, cancellation, progress, film);
+  shown.reset();
+  report.first_pixel_seconds = started_seconds + report.render.first_pixel_seconds;
+  report.samples = sample_totals(film);
+  report.invalid_samples = film.invalid_samples();
+  report.is_interrupted = report.samples.fewest < world.settings.samples_per_pixel;
+}
+
+}  // namespace
+
+int run_render(const RenderArguments& arguments, Clock::time_point program_start) {
+  const std::string path = arguments.scene.empty() ? default_scene() : arguments.scene;
+  const Outputs outputs = choose_outputs(arguments, path);
+  check_outputs(outputs, path);
+  install_signal_handlers(cancellation);
+
+  FrameReport report;
+  report.scene = path;
+  report.tile_size = arguments.tile_size;
+  const std::unique_ptr<World> world = make_world(arguments, path, report);
+  report.settings = world->settings;
+  report.world_bytes = world_bytes(*world);
+  report.film_bytes = film_bytes(world->settings.width, world->settings.height);
+  Film film(world->settings.width, world->settings.height);
+  save_when_interrupted();
+  trace(arguments, *world, film, report, program_start);
+  if (report.samples.total == 0) throw Failure(exit_failed, "interrupted before the first pixel; nothing was written");
+
+  tell_result(report, arguments.quiet);
+  FileError errors = write_frame(film, write_settings(arguments, outputs, scene_title(path), world->settings));
+  if (!outputs.stats.empty())
+    if (const FileError error = write_stats(outputs.stats, report)) errors = errors ? *errors + "\n" + *error : *error;
+  if (errors) throw Failure(exit_failed, *errors);
+  if (!arguments.quiet) tell_files(outputs);
+  return report.is_interrupted ? exit_failed : exit_done;
+}
+
+}  // namespace metamer

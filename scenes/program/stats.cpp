@@ -1,0 +1,79 @@
+#include "scenes/program/stats.h"
+
+#include <json/json.h>
+
+#include <array>
+#include <fstream>
+
+#include "engine/simd/instruction_set.h"
+
+namespace metamer {
+namespace {
+
+// In the order of SystemId.
+constexpr std::array system_names = {"camera_rays",  "intersect", "sort",   "surface",  "emission",
+                                     "light_sample", "shade",     "shadow", "roulette", "accumulate"};
+static_assert(system_names.size() == system_count);
+
+double ratio(double a, double b) { return b > 0 ? a / b : 0; }
+
+Json::Value count(uint64_t value) { return Json::Value(static_cast<Json::UInt64>(value)); }
+
+Json::Value to_json(const FrameReport& report) {
+  const Counters& counters = report.render.counters;
+  Json::Value json;
+  json["version"] = METAMER_VERSION;
+  json["isa"] = std::string(chosen_isa_name());
+  json["scene"] = report.scene;
+  json["width"] = report.settings.width;
+  json["height"] = report.settings.height;
+  json["seed"] = report.settings.seed;
+  json["max_depth"] = report.settings.max_depth;
+  json["samples_per_pixel"] = report.settings.samples_per_pixel;
+  json["fewest_samples_per_pixel"] = count(report.samples.fewest);
+  json["most_samples_per_pixel"] = count(report.samples.most);
+  json["interrupted"] = report.is_interrupted;
+  json["threads"] = report.render.threads;
+  json["tile"] = report.tile_size;
+  json["samples"] = count(report.samples.total);
+  json["invalid_samples"] = count(report.invalid_samples);
+  json["rays"]["camera"] = count(counters.camera_rays);
+  json["rays"]["bounce"] = count(counters.bounce_rays);
+  json["rays"]["shadow"] = count(counters.shadow_rays);
+  json["lane_fill"] = ratio(static_cast<double>(counters.live_lanes), static_cast<double>(counters.lanes));
+  json["load_seconds"] = report.load_seconds;
+  json["build_seconds"] = report.build_seconds;
+  json["render_seconds"] = report.render.render_seconds;
+  json["first_pixel_seconds"] = report.first_pixel_seconds;
+  json["cpu_seconds"] = report.render.cpu_seconds;
+  json["embree_seconds"] = counters.embree_seconds;
+  json["embree_share"] = ratio(counters.embree_seconds, report.render.cpu_seconds);
+  for (size_t i = 0; i < system_count; ++i) json["systems"][system_names[i]] = counters.seconds[i];
+  json["peak_rss_bytes"] = count(peak_rss_bytes());
+  json["batch_bytes"] = count(report.render.batch_bytes);
+  json["film_bytes"] = count(report.film_bytes);
+  json["world_bytes"] = count(report.world_bytes);
+  return json;
+}
+
+}  // namespace
+
+size_t peak_rss_bytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (size_t kibibytes = 0; word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
+  return 0;
+}
+
+FileError write_stats(const std::string& path, const FrameReport& report) {
+  Json::StreamWriterBuilder builder;
+  builder["indentation"] = "  ";
+  builder["precision"] = 9;
+  const std::string text = Json::writeString(builder, to_json(report)) + "\n";
+  AtomicFile file;
+  if (FileError error = file.open(path)) return error;
+  if (FileError error = file.write(text.data(), text.size())) return error;
+  return file.commit();
+}
+
+}  // namespace metamer

@@ -1,0 +1,65 @@
+#include "scenes/program/values.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <limits>
+
+namespace metamer {
+namespace {
+
+// All of the text as one number, or nothing.
+template <class T>
+std::optional<T> number(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+bool is_digits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+}  // namespace
+
+std::optional<uint32_t> parse_count(std::string_view flag, std::string_view text, uint32_t least, uint32_t most,
+                                    Mistakes& mistakes) {
+  const std::optional<uint32_t> value = number<uint32_t>(text);
+  if (value && *value >= least && *value <= most) return value;
+  mistakes.push_back(fmt::format("{}: expected a whole number from {} to {}, not '{}'", flag, least, most, text));
+  return std::nullopt;
+}
+
+std::optional<float> parse_real(std::string_view flag, std::string_view text, float least, float most,
+                                Mistakes& mistakes) {
+  std::string_view digits = text;
+  if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
+  const std::optional<float> value = number<float>(digits);
+  if (value && *value >= least && *value <= most) return value;  // false for not-a-number
+  mistakes.push_back(fmt::format("{}: expected a number from {} to {}, not '{}'", flag, least, most, text));
+  return std::nullopt;
+}
+
+std::optional<std::pair<uint32_t, uint32_t>> parse_size(std::string_view flag, std::string_view text,
+                                                        Mistakes& mistakes) {
+  const size_t x = text.find_first_of("xX");
+  const std::string_view width_text = text.substr(0, x);
+  const std::string_view height_text = x == std::string_view::npos ? "" : text.substr(x + 1);
+  if (!is_digits(width_text) || !is_digits(height_text)) {
+    mistakes.push_back(fmt::format("{}: expected WIDTHxHEIGHT in pixels, such as 640x360, not '{}'", flag, text));
+    return std::nullopt;
+  }
+  const std::optional<uint32_t> width = number<uint32_t>(width_text), height = number<uint32_t>(height_text);
+  if (!width || !height) {
+    mistakes.push_back(fmt::format("{}: a frame of {} is too large", flag, text));
+    return std::nullopt;
+  }
+  if (*width == 0 || *height == 0) {
+    mistakes.push_back(fmt::format("{}: a frame of {} has no pixels", flag, text));
+    return std::nullopt;
+  }
+  return std::pair(*width, *height);
+}
+
+}  // namespace metamer
