@@ -43,16 +43,15 @@ TEST(PbrtTransforms, TransformReplacesAndConcatTransformAppendsAMatrixGivenColum
   expect_near(moved("Transform [ 2 0 0 0  0 2 0 0  0 0 2 0  0 0 0 2 ]"), {1, 2, 3});
 }
 
-TEST(PbrtTransforms, LookAtInTheWorldPlacesThingsAsInFrontOfACamera) {
-  // From (0, 0, 5) towards the origin: pbrt's camera looks along +z with +x to the right, so world +x is its -x... of a
-  // right-handed world seen from +z: x stays x on the picture's right only if mirrored.
+TEST(PbrtTransforms, LookAtStandsTheCameraAtTheEyeWithZAhead) {
+  // From (0, 0, 5) towards the origin. Camera space is left-handed: its +x is up x forward, the world's -x.
   const ReadScene read = read_text("LookAt 0 0 5  0 0 0  0 1 0 Camera \"perspective\" WorldBegin");
   ASSERT_TRUE(read.ok);
   const auto camera = read.scene.registry.get<Transform>(read.entity<Camera>());
-  expect_near(image(camera, {0, 0, 0}), {0, 0, 5});   // the eye
-  expect_near(image(camera, {0, 0, 1}), {0, 0, 4});   // one metre ahead
-  expect_near(image(camera, {0, 1, 0}), {0, 1, 5});   // up
-  expect_near(image(camera, {1, 0, 0}), {-1, 0, 5});  // up x forward: pbrt's camera space is left-handed
+  expect_near(image(camera, {0, 0, 0}), {0, 0, 5});  // the eye
+  expect_near(image(camera, {0, 0, 1}), {0, 0, 4});  // one metre ahead
+  expect_near(image(camera, {0, 1, 0}), {0, 1, 5});  // up
+  expect_near(image(camera, {1, 0, 0}), {-1, 0, 5});
 }
 
 TEST(PbrtTransforms, AttributeBlocksRestoreAndNest) {
