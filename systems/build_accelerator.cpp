@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "engine/schedule/workers.h"
 #include "engine/simd/instruction_set.h"
 #include "systems/accelerator.h"
 #include "systems/freeze.h"
@@ -153,11 +154,18 @@ RTCGeometry quadric_geometry(Accelerator& accelerator, const World& world, uint3
   return geometry;
 }
 
-// Spatial splits make the best trees; the builder is the same every time only on one thread, which the device has.
+// Spatial splits make the best trees.
 RTCScene new_scene(RTCDevice device) {
   RTCScene scene = rtcNewScene(device);
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
   return scene;
+}
+
+// The builder is the same every time only on one thread. A device with `threads=1` would see to that too, but Embree
+// then keeps all of oneTBB at one thread for as long as the device lives, the rendering as well.
+void commit_on_one_thread(RTCScene scene) {
+  const auto commit = [](void* context, uint32_t, size_t) { rtcCommitScene(static_cast<RTCScene>(context)); };
+  run_units(1, 1, Cancellation(), commit, scene);
 }
 
 }  // namespace
@@ -165,7 +173,7 @@ RTCScene new_scene(RTCDevice device) {
 void build_accelerator(World& world) {
   auto* accelerator = new Accelerator;
   world.accelerator = {accelerator, destroy};
-  const std::string config = fmt::format("threads=1,isa={}", embree_isa_name());
+  const std::string config = fmt::format("isa={}", embree_isa_name());
   accelerator->device = rtcNewDevice(config.c_str());
   RTCDevice device = accelerator->device;
   if (device == nullptr) throw std::runtime_error("Embree could not be started with " + config);
@@ -186,7 +194,7 @@ void build_accelerator(World& world) {
         rtcCommitGeometry(triangles);
         rtcAttachGeometryByID(mesh, triangles, 0);
         rtcReleaseGeometry(triangles);
-        rtcCommitScene(mesh);
+        commit_on_one_thread(mesh);
         accelerator->shared_meshes.push_back(mesh);
       }
       geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
@@ -198,7 +206,7 @@ void build_accelerator(World& world) {
     rtcAttachGeometryByID(accelerator->root, geometry, object);
     rtcReleaseGeometry(geometry);
   }
-  rtcCommitScene(accelerator->root);
+  commit_on_one_thread(accelerator->root);
   check(device);
 }
 
