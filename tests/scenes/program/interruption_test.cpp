@@ -132,6 +132,11 @@ TEST_F(Interruption, ATerminalShowsABarThatFitsItsWidth) {
   }
 }
 
+TEST_F(Interruption, AllThreadsThatWereAskedForWork) {
+  RunningProgram program({"render", "small.json", "--spp", "4000000", "--threads", "3", "-q"}, folder());
+  EXPECT_TRUE(wait_until([&] { return program.threads_at_work() >= 3; }));
+}
+
 TEST_F(Interruption, ALogGetsPlainLines) {
   RunningProgram program(endless, folder());
   ASSERT_TRUE(wait_until([&] { return program.err_so_far().find("samples/s") != std::string::npos; }));

@@ -70,6 +70,20 @@ class RunningProgram {
     return (mask >> (signal - 1) & 1) != 0;
   }
 
+  // Threads that have used 50 ms of processor time or more.
+  size_t threads_at_work() const {
+    size_t threads = 0;
+    std::error_code gone;
+    const std::string tasks = "/proc/" + std::to_string(process_) + "/task";
+    for (const auto& task : std::filesystem::directory_iterator(tasks, gone)) {
+      std::ifstream stat(task.path() / "stat");
+      std::string field;
+      for (int i = 0; i < 14; ++i) stat >> field;  // the name, field 2, has no blank; 14 is user time in ticks
+      threads += std::strtoul(field.c_str(), nullptr, 10) * 1000 >= 50 * static_cast<size_t>(::sysconf(_SC_CLK_TCK));
+    }
+    return threads;
+  }
+
   ProgramResult wait() {
     int status = 0;
     ::waitpid(process_, &status, 0);
