@@ -74,6 +74,7 @@ struct Environment {
   ImageMapping mapping = ImageMapping::latitude_longitude;
   Column<float> texels;    // four per texel: sigmoid coefficients c0 c1 c2 and scale
   Distribution2D density;  // over the image's square, proportional to the texels' luminance times the measure
+  double mean_luminance = 1;  // of the image over the sphere
   float to_world[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // rotation, row-major; to_local is its inverse
   float to_local[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 };

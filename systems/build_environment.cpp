@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "engine/schedule/workers.h"
+#include "engine/simd/portable_math.h"
+#include "engine/spectrum/rgb_columns.h"
+#include "systems/freeze.h"
+
+namespace metamer {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr uint32_t texels_per_unit = 1 << 14;  // a multiple of column_lanes
+
+// The image's channels over twice the largest of a texel, which is the texel's scale: the unbounded kind of spectrum.
+struct TexelColumns {
+  Column<float> channel[3], coefficient[3], scale;
+};
+
+TexelColumns split_channels(const Image& image) {
+  const size_t count = size_t{image.width} * image.height;
+  TexelColumns columns;
+  for (int c = 0; c < 3; ++c) {
+    columns.channel[c].resize(count);
+    columns.coefficient[c].resize(count);
+  }
+  columns.scale.resize(count);
+  for (size_t texel = 0; texel < count; ++texel) {
+    const float* rgb = image.rgb.data() + 3 * texel;
+    const float scale = 2 * std::max({rgb[0], rgb[1], rgb[2], 0.0f});
+    columns.scale[texel] = scale;
+    for (int c = 0; c < 3; ++c) columns.channel[c][texel] = scale > 0 ? rgb[c] / scale : 0.0f;
+  }
+  return columns;
+}
+
+struct FitContext {
+  ColorSpace space;
+  TexelColumns& columns;
+};
+
+void fit_unit(void* context, uint32_t, size_t unit) {
+  const FitContext& fit = *static_cast<FitContext*>(context);
+  const size_t begin = unit * texels_per_unit;
+  const size_t count = std::min<size_t>(texels_per_unit, fit.columns.scale.size() - begin);
+  const auto& in = fit.columns.channel;
+  auto& out = fit.columns.coefficient;
+  rgb_to_sigmoid(fit.space, {in[0].data() + begin, in[1].data() + begin, in[2].data() + begin},
+                 {out[0].data() + begin, out[1].data() + begin, out[2].data() + begin}, count);
+}
+
+// The solid angle of a row's texels, relative to the mean over the image's square.
+double ring_weight(const Image& image, uint32_t y) {
+  if (image.mapping != ImageMapping::latitude_longitude) return 1;
+  const double top = portable::cos(pi * y / image.height), bottom = portable::cos(pi * (y + 1) / image.height);
+  return (top - bottom) * image.height / 2;
+}
+
+}  // namespace
+
+void build_environment(const Image* image, const glm::dmat4& to_world, Environment& environment) {
+  const glm::dmat3 rotation(to_world), inverse = glm::inverse(rotation);
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) {
+      environment.to_world[3 * row + column] = static_cast<float>(rotation[column][row]);
+      environment.to_local[3 * row + column] = static_cast<float>(inverse[column][row]);
+    }
+  if (image == nullptr) return;
+  environment.width = image->width;
+  environment.height = image->height;
+  environment.mapping = image->mapping;
+  TexelColumns columns = split_channels(*image);
+  const size_t count = columns.scale.size();
+  FitContext context{image->color_space, columns};
+  run_units(available_threads(), (count + texels_per_unit - 1) / texels_per_unit, Cancellation(), fit_unit, &context);
+  environment.texels.resize(4 * count);
+  std::vector<double> weights(count);
+  const Color3 luminance = rgb_to_xyz(image->color_space)[1];
+  double sum = 0;
+  for (size_t texel = 0; texel < count; ++texel) {
+    for (int c = 0; c < 3; ++c) environment.texels[4 * texel + c] = columns.coefficient[c][texel];
+    environment.texels[4 * texel + 3] = columns.scale[texel];
+    const float* rgb = image->rgb.data() + 3 * texel;
+    const double level = luminance[0] * rgb[0] + luminance[1] * rgb[1] + luminance[2] * rgb[2];
+    weights[texel] = std::max(level, 0.0) * ring_weight(*image, static_cast<uint32_t>(texel / image->width));
+    sum += weights[texel];
+  }
+  environment.mean_luminance = sum / static_cast<double>(count);
+  environment.density = make_distribution_2d(weights, image->width, image->height);
+}
+
+}  // namespace metamer
