@@ -52,6 +52,17 @@ void render_unit(void* context, uint32_t worker_index, size_t unit) {
   frame.progress.samples_done.fetch_add(samples, std::memory_order_relaxed);
 }
 
+// The systems' clocks tell the wall's time. On a machine that others use, too, a worker is kept waiting in the midst of
+// any system: their seconds are shares of the processor time that the workers really had.
+void to_processor_time(RenderStats& stats) {
+  double wall = 0;
+  for (const double seconds : stats.counters.seconds) wall += seconds;
+  if (!(wall > stats.cpu_seconds)) return;
+  const double share = stats.cpu_seconds / wall;
+  for (double& seconds : stats.counters.seconds) seconds *= share;
+  stats.counters.embree_seconds *= share;
+}
+
 }  // namespace
 
 RenderStats render(const World& world, const RenderOptions& options, const Cancellation& cancellation,
@@ -75,6 +86,7 @@ RenderStats render(const World& world, const RenderOptions& options, const Cance
   stats.first_pixel_seconds = frame.first_pixel_seconds;
   stats.batch_bytes = frame.workers.front()->batch.arena.bytes();
   for (const auto& worker : frame.workers) stats.counters.add(worker->counters);
+  to_processor_time(stats);
   return stats;
 }
 

@@ -17,7 +17,7 @@ struct RayPacket {
   uint32_t sample;
 };
 
-// Seconds a worker spent, by system and inside Embree, and rays by kind.
+// Seconds a worker spent, by system and inside Embree (intersect and shadow include Embree's), and rays by kind.
 enum class SystemId : uint32_t {
   camera_rays,
   intersect,
