@@ -107,7 +107,10 @@ void add_mesh_object(Builder& b, Entity entity, const Geometry& geometry, const 
     if (known == no_index) known = add_triangles(b, mesh, glm::dmat4(1), false);
     first = known;
     placement = static_cast<uint32_t>(b.world.placements.size());
-    b.world.placements.push_back(make_placement(to_world, geometry));
+    Placement instance = make_placement(to_world, geometry);
+    // The outside is named in the mesh's own space; a mirror reverses the order in which its vertices run.
+    if (glm::determinant(glm::dmat3(to_world)) < 0) instance.normal_sign = -1;
+    b.world.placements.push_back(instance);
     b.world.has_instances = true;
   } else {
     first = add_triangles(b, mesh, to_world, geometry.flip_normal != 0);
