@@ -1,0 +1,326 @@
+#include "tests/reference_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <random>
+
+#include "engine/spectrum/observers.h"
+#include "engine/spectrum/rgb_fit.h"
+#include "systems/bsdf/reference.h"
+#include "tests/reference_scene.h"
+
+namespace metamer {
+namespace {
+
+using reference::BsdfSample;
+using reference::BsdfValue;
+using reference::Direction;
+using reference::Spectrum4;
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Tracer {
+  const World& world;
+  ReferenceScene scene;
+  std::mt19937_64 generator;
+  std::uniform_real_distribution<double> uniform{0.0, 1.0};
+
+  double random() { return uniform(generator); }
+
+  Tracer(const World& frozen, uint32_t seed) : world(frozen), scene(frozen), generator(seed) {}
+
+  Spectrum4 spectrum(uint32_t id, const Spectrum4& lambda_nm) const {
+    Spectrum4 values;
+    for (size_t j = 0; j < 4; ++j) values[j] = world.spectra.value(id, lambda_nm[j]);
+    return values;
+  }
+  Spectrum4 light_radiance(const LightRow& row, const Spectrum4& lambda_nm) const {
+    Spectrum4 values = spectrum(row.spectrum, lambda_nm);
+    for (double& value : values) value *= row.scale;
+    return values;
+  }
+
+  // Clarberg 2008: the octahedron's unfolding with equal areas.
+  static glm::dvec2 equal_area_uv(const Vector& d) {
+    const double r = std::sqrt(1 - std::abs(d.z));
+    const double phi = std::atan2(std::abs(d.y), std::abs(d.x)) * 2 / pi;
+    double v = phi * r, u = r - v;
+    if (d.z < 0) {
+      const double folded = 1 - v;
+      v = 1 - u;
+      u = folded;
+    }
+    return {(std::copysign(u, d.x) + 1) / 2, (std::copysign(v, d.y) + 1) / 2};
+  }
+
+  Spectrum4 environment_radiance(const Vector& direction, const Spectrum4& lambda_nm) const {
+    const Environment& e = world.environment;
+    if (e.light == no_index) return {};
+    Spectrum4 values = light_radiance(world.lights[e.light], lambda_nm);
+    if (e.width == 0) return values;
+    Vector d;
+    for (int i = 0; i < 3; ++i) d[i] = glm::dot(read3(e.to_local + 3 * i), direction);
+    d = glm::normalize(d);
+    double turn = std::atan2(d.y, d.x) / (2 * pi);
+    if (turn < 0) turn += 1;
+    const glm::dvec2 uv = e.mapping == ImageMapping::equal_area
+                              ? equal_area_uv(d)
+                              : glm::dvec2(turn, std::acos(std::clamp(d.z, -1.0, 1.0)) / pi);
+    const uint32_t x = std::min(static_cast<uint32_t>(uv.x * e.width), e.width - 1);
+    const uint32_t y = std::min(static_cast<uint32_t>(uv.y * e.height), e.height - 1);
+    const float* texel = e.texels.data() + 4 * (size_t{y} * e.width + x);
+    for (size_t j = 0; j < 4; ++j) values[j] *= texel[3] * sigmoid_at(texel, lambda_nm[j]);
+    return values;
+  }
+  static double sigmoid_at(const float* c, double lambda_nm) {
+    return sigmoid_polynomial({c[0], c[1], c[2]}, lambda_nm);
+  }
+
+  struct LightPoint {
+    Vector direction;
+    double distance = infinity;
+    double factor = 0;  // on the light's spectrum: what of it arrives, divided by the density
+  };
+
+  Vector random_on_sphere() {
+    const double z = 1 - 2 * random(), phi = 2 * pi * random(), r = std::sqrt(std::max(0.0, 1 - z * z));
+    return {r * std::cos(phi), r * std::sin(phi), z};
+  }
+
+  // One light, uniformly chosen among those that are not the environment; a point of it, uniformly by area (of the
+  // unit sphere it is the image of).
+  LightPoint sample_light(const Vector& from, uint32_t* chosen) {
+    std::vector<uint32_t> candidates;
+    for (uint32_t i = 0; i < world.lights.size(); ++i)
+      if (world.lights[i].shape != static_cast<uint32_t>(LightShape::environment)) candidates.push_back(i);
+    LightPoint sample;
+    if (candidates.empty()) return sample;
+    *chosen = candidates[std::min(static_cast<size_t>(random() * double(candidates.size())), candidates.size() - 1)];
+    const LightRow& row = world.lights[*chosen];
+    const double count = double(candidates.size());
+    const Vector p = read3(row.p), a = read3(row.axes), b = read3(row.axes + 3), c = read3(row.axes + 6);
+    const auto shape = static_cast<LightShape>(row.shape);
+    if (shape == LightShape::directional) return {glm::normalize(p), infinity, count};
+    if (shape == LightShape::point) {
+      const double d = glm::length(p - from);
+      return {(p - from) / d, d, count / (d * d)};
+    }
+    Vector at, area;  // the point, and the area vector per unit density
+    if (shape == LightShape::triangle) {
+      double u = random(), v = random();
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      at = p + a * u + b * v;
+      area = glm::cross(a, b) / 2.0;
+      if (glm::dot(area, read3(row.normal)) < 0) area = -area;
+    } else if (shape == LightShape::disk) {
+      double x = 0, y = 0, r2 = 2;
+      while (r2 > 1 || r2 < double{row.inner} * row.inner) {
+        x = 2 * random() - 1, y = 2 * random() - 1;
+        r2 = x * x + y * y;
+      }
+      at = p + a * x + b * y;
+      area = read3(row.normal) * (pi * (1 - double{row.inner} * row.inner) * glm::length(glm::cross(a, b)));
+    } else {
+      const Vector q = random_on_sphere();
+      const glm::dmat3 axes(a, b, c);
+      at = p + axes * q;
+      area = std::abs(glm::determinant(axes)) * (glm::transpose(glm::inverse(axes)) * q) * (4 * pi) *
+             double{row.normal_sign};
+    }
+    const double d = glm::length(at - from);
+    sample.direction = (at - from) / d;
+    sample.distance = d;
+    double projected = -glm::dot(area, sample.direction);
+    if (row.two_sided != 0) projected = std::abs(projected);
+    sample.factor = projected > 0 ? count * projected / (d * d) : 0;
+    return sample;
+  }
+
+  struct LocalFrame {
+    Vector x, y, z;
+    Direction in(const Vector& v) const { return {glm::dot(x, v), glm::dot(y, v), glm::dot(z, v)}; }
+    Vector out(const Direction& v) const { return x * v.x + y * v.y + z * v.z; }
+  };
+  static LocalFrame frame_of(const ReferenceHit& hit) {
+    LocalFrame frame;
+    frame.z = hit.shading;
+    Vector along = hit.tangent - frame.z * glm::dot(frame.z, hit.tangent);
+    if (!(glm::length(along) > 1e-12))
+      along = glm::cross(std::abs(frame.z.x) > 0.5 ? Vector(0, 1, 0) : Vector(1, 0, 0), frame.z);
+    frame.x = glm::normalize(along);
+    frame.y = glm::cross(frame.z, frame.x);
+    return frame;
+  }
+
+  // Radiance that arrives at `origin` against `direction` after at most `events` scatterings. `sees_lights`: area
+  // lights count where they are hit, not having been sampled before. `together`: four wavelengths on one way.
+  Spectrum4 radiance(const Vector& origin, const Vector& direction, const Spectrum4& lambda_nm, bool together,
+                     uint32_t events, bool sees_lights, uint32_t mask) {
+    const ReferenceHit hit = scene.intersect(origin, direction, mask);
+    if (hit.object == no_index) return environment_radiance(direction, lambda_nm);
+    Spectrum4 sum{};
+    if (sees_lights && hit.light != no_index) {
+      const LightRow& row = world.lights[hit.light];
+      if (row.two_sided != 0 || glm::dot(direction, hit.outside) < 0) sum = light_radiance(row, lambda_nm);
+    }
+    if (events == 0) return sum;
+    const Spectrum4 scattered = scatter(hit, direction, lambda_nm, together, events);
+    for (size_t j = 0; j < 4; ++j) sum[j] += scattered[j];
+    return sum;
+  }
+
+  Spectrum4 scatter(const ReferenceHit& hit, const Vector& direction, const Spectrum4& lambda_nm, bool together,
+                    uint32_t events) {
+    const auto kind = static_cast<ShadeKind>(world.objects.shade_kind[hit.object]);
+    const uint32_t row = world.objects.material[hit.object];
+    const LocalFrame frame = frame_of(hit);
+    const Direction wo = frame.in(-direction);
+    if (kind == ShadeKind::absorber) return {};
+    if (kind == ShadeKind::dielectric) {
+      if (together && world.dielectric.dispersive[row] != 0) return disperse(hit, direction, lambda_nm, events);
+      const reference::DielectricOptics optics{spectrum(world.dielectric.eta[row], lambda_nm),
+                                               world.dielectric.schlick[row] != 0, false};
+      return go_on(hit, frame, reference::sample_dielectric(wo, optics, random()), lambda_nm, together, events);
+    }
+    if (kind == ShadeKind::diffuse) {
+      const Spectrum4 albedo = spectrum(world.diffuse.reflectance[row], lambda_nm);
+      const Spectrum4 lit =
+          direct(hit, frame, lambda_nm, [&](const Direction& wi) { return reference::eval_diffuse(wo, albedo, wi); });
+      const double u = random(), v = random();
+      return plus(lit, go_on(hit, frame, reference::sample_diffuse(wo, albedo, u, v), lambda_nm, together, events));
+    }
+    const reference::Roughness roughness =
+        kind == ShadeKind::smooth_conductor
+            ? reference::Roughness{}
+            : reference::Roughness{world.conductor.alpha_x[row], world.conductor.alpha_y[row]};
+    const reference::ConductorOptics optics{spectrum(world.conductor.eta[row], lambda_nm),
+                                            spectrum(world.conductor.kappa[row], lambda_nm),
+                                            world.conductor.schlick[row] != 0};
+    Spectrum4 lit{};
+    if (kind == ShadeKind::rough_conductor)
+      lit = direct(hit, frame, lambda_nm,
+                   [&](const Direction& wi) { return reference::eval_conductor(wo, roughness, optics, wi); });
+    const double u = random(), v = random();
+    return plus(
+        lit, go_on(hit, frame, reference::sample_conductor(wo, roughness, optics, u, v), lambda_nm, together, events));
+  }
+
+  // Each wavelength goes its own way from here on.
+  Spectrum4 disperse(const ReferenceHit& hit, const Vector& direction, const Spectrum4& lambda_nm, uint32_t events) {
+    Spectrum4 result;
+    for (size_t j = 0; j < 4; ++j) {
+      Spectrum4 alone;
+      alone.fill(lambda_nm[j]);
+      result[j] = scatter(hit, direction, alone, false, events)[0];
+    }
+    return result;
+  }
+
+  template <class Evaluate>
+  Spectrum4 direct(const ReferenceHit& hit, const LocalFrame& frame, const Spectrum4& lambda_nm,
+                   const Evaluate& evaluate) {
+    uint32_t light = 0;
+    const LightPoint sample = sample_light(hit.position, &light);
+    if (!(sample.factor > 0)) return {};
+    const BsdfValue value = evaluate(frame.in(sample.direction));
+    const double far = std::isinf(sample.distance) ? infinity : sample.distance * (1 - 1e-6);
+    if (scene.intersect(hit.position, sample.direction, visible_to_shadows, far).object != no_index) return {};
+    Spectrum4 result = light_radiance(world.lights[light], lambda_nm);
+    for (size_t j = 0; j < 4; ++j) result[j] *= value.f_cos[j] * sample.factor;
+    return result;
+  }
+
+  Spectrum4 go_on(const ReferenceHit& hit, const LocalFrame& frame, const BsdfSample& sample,
+                  const Spectrum4& lambda_nm, bool together, uint32_t events) {
+    if (!(sample.pdf > 0)) return {};
+    Spectrum4 result =
+        radiance(hit.position, frame.out(sample.wi), lambda_nm, together, events - 1, sample.delta, visible_to_bounces);
+    for (size_t j = 0; j < 4; ++j) result[j] *= sample.weight[j];
+    return result;
+  }
+
+  static Spectrum4 plus(const Spectrum4& a, const Spectrum4& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]};
+  }
+
+  // The pixel filter's shape by rejection.
+  double filter_offset(double radius) {
+    const PixelFilter& filter = world.filter;
+    for (;;) {
+      const double x = radius * (2 * random() - 1);
+      double height = 1;
+      if (filter.kind == FilterKind::triangle) height = 1 - std::abs(x) / radius;
+      if (filter.kind == FilterKind::gaussian) {
+        const double s = -0.5 / (filter.sigma * filter.sigma), edge = std::exp(s * radius * radius);
+        height = (std::exp(s * x * x) - edge) / (1 - edge);
+      }
+      if (random() < height) return x;
+    }
+  }
+
+  Spectrum4 camera_radiance(uint32_t x, uint32_t y, const Spectrum4& lambda_nm) {
+    const CameraRow& camera = world.camera;
+    const double film_x = x + 0.5 + filter_offset(world.filter.radius_x);
+    const double film_y = y + 0.5 + filter_offset(world.filter.radius_y);
+    const Vector across = read3(camera.right) * film_x + read3(camera.down) * film_y;
+    Vector origin = read3(camera.origin), direction = read3(camera.axis);
+    (camera.kind == CameraKind::perspective ? direction : origin) += across;
+    direction = glm::normalize(direction);
+    if (camera.lens_radius > 0) {
+      const double depth = camera.focal_distance / glm::dot(direction, read3(camera.forward));
+      const Vector focus = origin + depth * direction;
+      double u = 1, v = 1;
+      while (u * u + v * v > 1) u = 2 * random() - 1, v = 2 * random() - 1;
+      origin += read3(camera.lens_x) * u + read3(camera.lens_y) * v;
+      direction = glm::normalize(focus - origin);
+    }
+    return radiance(origin, direction, lambda_nm, true, world.settings.max_depth, true, visible_to_camera);
+  }
+
+  std::array<double, 3> sample_xyz(uint32_t x, uint32_t y) {
+    constexpr double range = lambda_max_nm - lambda_min_nm;
+    const double start = random();
+    Spectrum4 lambda_nm;
+    for (size_t j = 0; j < 4; ++j) lambda_nm[j] = lambda_min_nm + range * (double(j) + start) / 4;
+    const Spectrum4 radiance = camera_radiance(x, y, lambda_nm);
+    std::array<double, 3> xyz{};
+    for (size_t j = 0; j < 4; ++j) {
+      const auto matching = observer_value(Observer::cie1931, lambda_nm[j]);
+      for (size_t c = 0; c < 3; ++c)
+        xyz[c] += luminous_efficacy * radiance[j] * matching[c] * range / 4 * world.settings.sensor_scale;
+    }
+    return xyz;
+  }
+};
+
+}  // namespace
+
+std::vector<ReferencePixel> reference_path(const World& world, uint32_t samples_per_pixel, uint32_t seed) {
+  Tracer tracer(world, seed);
+  const uint32_t width = world.settings.width, height = world.settings.height;
+  std::vector<ReferencePixel> pixels;
+  for (uint32_t y = 0; y < height; ++y)
+    for (uint32_t x = 0; x < width; ++x) {
+      std::array<double, 3> sum{}, squares{};
+      for (uint32_t k = 0; k < samples_per_pixel; ++k) {
+        const std::array<double, 3> xyz = tracer.sample_xyz(x, y);
+        for (size_t c = 0; c < 3; ++c) sum[c] += xyz[c], squares[c] += xyz[c] * xyz[c];
+      }
+      ReferencePixel pixel;
+      const double n = samples_per_pixel;
+      for (size_t c = 0; c < 3; ++c) {
+        pixel.mean_xyz[c] = sum[c] / n;
+        pixel.variance_of_mean[c] = (squares[c] / n - pixel.mean_xyz[c] * pixel.mean_xyz[c]) / (n - 1);
+      }
+      pixels.push_back(pixel);
+    }
+  return pixels;
+}
+
+}  // namespace metamer

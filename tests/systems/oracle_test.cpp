@@ -1,0 +1,202 @@
+// The stream pipeline against the scalar oracle on small scenes that together use every material, light, shape,
+// camera and filter. What "agree" means is stated in support/agreement.h.
+#include "tests/systems/support/agreement.h"
+
+namespace metamer {
+namespace {
+
+constexpr uint32_t side = 16;
+
+// A box of 2 m around the origin, open towards the camera at +z, walls of different colours.
+void add_walls(SceneBuilder& b) {
+  const Geometry wall = rectangle(2, 2);
+  const auto rgb = [&](double red, double green, double blue) {
+    return b.diffuse(b.scene.spectra.add_rgb({red, green, blue}, RgbKind::albedo).id);
+  };
+  b.add(wall, rgb(0.7, 0.7, 0.7), moved(0, -1, 0) * turned(-90, 1, 0, 0));
+  b.add(wall, rgb(0.7, 0.7, 0.7), moved(0, 1, 0) * turned(90, 1, 0, 0));
+  b.add(wall, rgb(0.7, 0.7, 0.7), moved(0, 0, -1));
+  b.add(wall, rgb(0.6, 0.1, 0.1), moved(-1, 0, 0) * turned(90, 0, 1, 0));
+  b.add(wall, rgb(0.1, 0.5, 0.1), moved(1, 0, 0) * turned(-90, 0, 1, 0));
+}
+void add_lamp(SceneBuilder& b, double height = 0.98) {
+  const Entity lamp = b.add(rectangle(0.8f, 0.8f), b.diffuse(0.0), moved(0, height, 0) * turned(90, 1, 0, 0));
+  b.emit(lamp, b.named("D65"), 0.01f);
+}
+void add_floor(SceneBuilder& b, double reflectance = 0.5) {
+  b.add(rectangle(6, 6), b.diffuse(reflectance), moved(0, -1, 0) * turned(-90, 1, 0, 0));
+}
+void look(SceneBuilder& b, Camera camera = perspective(40), const glm::dvec3& from = {0, 0, 3.7}) {
+  b.look_at(from, {0, 0, 0}, camera);
+}
+
+TEST(Oracle, AgreesOnADiffuseBoxWithAnAreaLight) {
+  SceneBuilder b(side, side, 2048, 6);
+  add_walls(b);
+  add_lamp(b);
+  look(b);
+  expect_agreement(*b.freeze(), 3072, 0.02);
+}
+
+TEST(Oracle, AgreesOnASphereLightOverRoughGold) {
+  SceneBuilder b(side, side, 2048, 4);
+  add_floor(b);
+  b.add(sphere(0.7f), b.conductor(b.named("Au.n"), b.named("Au.k"), 0.3f, 0.3f), moved(0, -0.3, 0));
+  b.emit(b.add(sphere(0.3f), b.diffuse(0.2), moved(1, 1.2, 0.8)), b.named("A"), 0.01f);
+  look(b);
+  expect_agreement(*b.freeze(), 8192, 0.02);
+}
+
+TEST(Oracle, AgreesOnAnisotropicMetalOfAMirroredInstancedMesh) {
+  SceneBuilder b(side, side, 4096, 4);
+  Mesh cube = cube_mesh();
+  for (const glm::vec3 p : cube.positions) {
+    cube.normals.push_back(glm::normalize(p));
+    cube.uvs.push_back({p.x + 0.3f * p.z, p.y - 0.2f * p.z});
+  }
+  b.scene.meshes.push_back(cube);
+  const Material metal = b.conductor(b.named("Cu.n"), b.named("Cu.k"), 0.15f, 0.5f);
+  b.add(mesh(0), metal, moved(-0.6, -0.2, 0) * turned(30, 1, 1, 0));
+  b.add(mesh(0), metal, moved(0.7, 0.1, 0) * turned(20, 0, 1, 1) * stretched(-1, 1.3, 0.8));
+  add_floor(b);
+  add_lamp(b, 2);
+  look(b);
+  expect_agreement(*b.freeze(), 8192, 0.03);
+}
+
+TEST(Oracle, AgreesOnASilverMirrorUnderAPointLight) {
+  SceneBuilder b(side, side, 1024, 5);
+  add_walls(b);
+  b.add(sphere(0.6f), b.conductor(b.named("Ag.n"), b.named("Ag.k")), moved(0.2, -0.4, 0));
+  b.light(LightKind::point, b.named("D50"), 0.01f, moved(-0.4, 0.6, 0.5));
+  look(b);
+  expect_agreement(*b.freeze(), 1024, 0.02);
+}
+
+TEST(Oracle, AgreesOnDispersingGlass) {
+  SceneBuilder b(side, side, 4096, 6);
+  add_walls(b);
+  b.add(sphere(0.6f), b.dielectric(b.named("SF66")), moved(0.1, -0.3, 0.2));
+  add_lamp(b);
+  look(b);
+  expect_agreement(*b.freeze(), 1536, 0.03);
+}
+
+TEST(Oracle, AgreesOnMirroredInstancesOfFlatGlass) {
+  SceneBuilder b(side, side, 2048, 6);
+  b.scene.meshes.push_back(cube_mesh());
+  const Material glass = b.dielectric(b.constant(1.5));
+  b.add(mesh(0), glass, moved(-0.6, -0.3, 0) * turned(30, 0.2, 1, 0));
+  b.add(mesh(0), glass, moved(0.6, -0.3, 0.1) * turned(20, 0.1, 1, 0.3) * stretched(1, -1, 1));
+  b.add(rectangle(4, 4), b.diffuse(b.named("colorchecker.orange")), moved(0, 0, -1.5));
+  add_floor(b);
+  b.light(LightKind::environment, b.named("D65"), 0.01f);
+  look(b);
+  expect_agreement(*b.freeze(), 512, 0.02);
+}
+
+TEST(Oracle, AgreesOnADirectionalLightBesideAPointLight) {
+  SceneBuilder b(side, side, 1024, 3);
+  b.add(sphere(0.8f), b.diffuse(0.6));
+  b.light(LightKind::directional, b.named("D65"), 0.01f, turned(-50, 1, 0.3, 0));
+  b.light(LightKind::point, b.named("A"), 0.02f, moved(-1.5, 0.5, 1.5));
+  look(b);
+  expect_agreement(*b.freeze(), 2048, 0.02);
+}
+
+TEST(Oracle, AgreesUnderAConstantSkyThroughAGaussianFilter) {
+  SceneBuilder b(side, side, 256, 5);
+  b.scene.settings.filter = {FilterKind::gaussian, 1.5f, 1.0f, 0.5f};
+  add_floor(b);
+  b.add(sphere(0.6f), b.diffuse(b.named("colorchecker.blue")), moved(-0.5, -0.4, 0));
+  b.add(disk(0.7f, 0.3f), b.conductor(b.named("Al.n"), b.named("Al.k"), 0.2f, 0.2f),
+        moved(0.7, 0, 0) * turned(-30, 1, 0, 0));
+  b.light(LightKind::environment, b.named("D65"), 0.01f);
+  look(b);
+  expect_agreement(*b.freeze(), 512, 0.02);
+}
+
+// A smooth gradient with a warm and a blue side, brighter towards the top row.
+Image sky(ImageMapping mapping) {
+  Image image;
+  image.mapping = mapping;
+  image.width = mapping == ImageMapping::equal_area ? 16 : 32;
+  image.height = 16;
+  for (uint32_t y = 0; y < image.height; ++y)
+    for (uint32_t x = 0; x < image.width; ++x) {
+      const float up = 1 - float(y) / float(image.height), along = float(x) / float(image.width);
+      for (const float v : {0.2f + up * along, 0.3f + up * up, 0.2f + up * (1 - along)}) image.rgb.push_back(v);
+    }
+  return image;
+}
+
+TEST(Oracle, AgreesUnderALatitudeLongitudeImage) {
+  SceneBuilder b(side, side, 512, 4);
+  add_floor(b);
+  b.add(sphere(0.7f), b.conductor(b.named("Ti.n"), b.named("Ti.k"), 0.25f, 0.25f));
+  b.environment(sky(ImageMapping::latitude_longitude), 1, turned(40, 1, 0.5, 0.2));
+  look(b);
+  expect_agreement(*b.freeze(), 512, 0.02);
+}
+
+TEST(Oracle, AgreesUnderAnEqualAreaImageBesideAnAreaLight) {
+  SceneBuilder b(side, side, 512, 4);
+  add_floor(b);
+  b.add(sphere(0.7f), b.diffuse(0.7));
+  b.environment(sky(ImageMapping::equal_area), 1, turned(-70, 0.3, 0.5, 1) * stretched(-1, 1, 1));
+  add_lamp(b, 1.5);
+  look(b);
+  expect_agreement(*b.freeze(), 512, 0.02);
+}
+
+TEST(Oracle, AgreesOnTwoSidedDiskAndStretchedSphereLights) {
+  SceneBuilder b(side, side, 2048, 4);
+  add_walls(b);
+  b.emit(b.add(disk(0.4f, 0.15f), b.diffuse(0.3), moved(-0.4, 0.2, 0) * turned(60, 0.2, 1, 0) * stretched(1, 1.5, 1)),
+         b.named("D65"), 0.01f, true);
+  b.emit(b.add(sphere(0.2f), b.diffuse(0.3), moved(0.5, -0.2, 0.1) * turned(40, 1, 1, 0) * stretched(0.5, 2, 1)),
+         b.named("A"), 0.01f);
+  look(b);
+  expect_agreement(*b.freeze(), 1024, 0.02);
+}
+
+TEST(Oracle, AgreesInsideASphereThatEmitsInwards) {
+  SceneBuilder b(side, side, 2048, 4);
+  Geometry shell = sphere(3);
+  shell.flip_normal = 1;
+  b.emit(b.add(shell, b.diffuse(0.2)), b.named("D65"), 0.01f);
+  b.add(sphere(0.7f), b.conductor(b.named("Ag.n"), b.named("Ag.k"), 0.4f, 0.2f));
+  b.add(disk(1.2f), b.diffuse(0.6), moved(0, -0.7, 0) * turned(-90, 1, 0, 0));
+  look(b, perspective(40), {0, 0.3, 2.7});
+  expect_agreement(*b.freeze(), 2048, 0.02);
+}
+
+TEST(Oracle, AgreesThroughAThinLensAndATriangleFilter) {
+  SceneBuilder b(side, side, 2048, 4);
+  b.scene.settings.filter = {FilterKind::triangle, 1.0f, 2.0f, 0.5f};
+  add_walls(b);
+  add_lamp(b);
+  b.add(sphere(0.4f), b.diffuse(0.1), moved(0.3, -0.5, 0.4));
+  Camera camera = perspective(40);
+  camera.lens_radius = 0.15f;
+  camera.focal_distance = 3.0f;
+  look(b, camera);
+  expect_agreement(*b.freeze(), 4096, 0.025);
+}
+
+TEST(Oracle, AgreesOnAnOrthographicViewOfSchlickMaterials) {
+  SceneBuilder b(side, side, 1024, 5);
+  add_floor(b);
+  Material metal = b.conductor(b.named("Au.n"), b.named("Au.k"), 0.3f, 0.3f);
+  metal.fresnel = FresnelModel::schlick;
+  Material glass = b.dielectric(b.named("BK7"));
+  glass.fresnel = FresnelModel::schlick;
+  b.add(sphere(0.5f), metal, moved(-0.5, 0, 0));
+  b.add(sphere(0.5f), glass, moved(0.5, 0, 0));
+  b.light(LightKind::environment, b.named("A"), 0.01f);
+  look(b, orthographic(2.4f));
+  expect_agreement(*b.freeze(), 1024, 0.02);
+}
+
+}  // namespace
+}  // namespace metamer
