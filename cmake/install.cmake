@@ -21,6 +21,8 @@ set_target_properties(metamer_library PROPERTIES EXPORT_NAME metamer)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/metamer)
 install(TARGETS metamer_flags metamer_engine metamer_systems metamer_scenes metamer_library EXPORT metamer)
 install(TARGETS metamer)
+# The program looks for its scenes beside its own folder: scenes/library.cpp.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes/library/ DESTINATION share/metamer/scenes OPTIONAL)
 install(EXPORT metamer NAMESPACE metamer:: FILE metamerTargets.cmake DESTINATION ${package_folder})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/metamerConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES cmake/metamerConfig.cmake cmake/dependencies.cmake ${PROJECT_BINARY_DIR}/metamerConfigVersion.cmake
