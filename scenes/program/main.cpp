@@ -1,5 +1,8 @@
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -43,7 +46,14 @@ int finish(int code) {
   return code == exit_done ? exit_failed : code;
 }
 
+// Started with a standard stream closed, the next file that is opened would take its place and receive what is printed.
+void open_standard_streams() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
+    if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDWR) < 0) ::_exit(exit_failed);
+}
+
 int run_program(int argc, char** argv, std::chrono::steady_clock::time_point start) {
+  open_standard_streams();
   try {
     return finish(run(parse_command_line(argc, argv), start));
   } catch (const Failure& failure) {

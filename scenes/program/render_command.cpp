@@ -80,12 +80,16 @@ void tell_files(const Outputs& outputs) {
   if (!outputs.stats.empty()) fmt::print("stats {}\n", outputs.stats);
 }
 
+void refuse_frame_without_memory(uint32_t width, uint32_t height, const std::string& said_by) {
+  if (const std::optional<std::string> mistake = check_frame_size(width, height))
+    throw Failure(exit_wrong_input, fmt::format("{}: {}", said_by, *mistake));
+}
+
 // Reads and builds; what was read is given back before the first ray.
 std::unique_ptr<World> make_world(const RenderArguments& arguments, const std::string& path, FrameReport& report) {
   const LoadedScene loaded = load_scene(path, arguments.overrides, arguments.quiet);
   const RenderSettings& settings = loaded.scene.settings;
-  if (const std::optional<std::string> mistake = check_frame_size(settings.width, settings.height))
-    throw Failure(exit_wrong_input, (arguments.overrides.width ? "--size: " : path + ": ") + *mistake);
+  refuse_frame_without_memory(settings.width, settings.height, path);
   BuiltWorld built = build_world(loaded, path, arguments.quiet);
   report.load_seconds = loaded.seconds;
   report.build_seconds = built.seconds;
@@ -112,6 +116,8 @@ int run_render(const RenderArguments& arguments, Clock::time_point program_start
   const std::string path = arguments.scene.empty() ? default_scene() : arguments.scene;
   const Outputs outputs = choose_outputs(arguments, path);
   check_outputs(outputs, path);
+  const SceneOverrides& overrides = arguments.overrides;
+  if (overrides.width && overrides.height) refuse_frame_without_memory(*overrides.width, *overrides.height, "--size");
   install_signal_handlers(cancellation);
 
   FrameReport report;

@@ -176,6 +176,14 @@ TEST_F(RenderCommand, SaysSoWhenMemoryRunsOut) {
   EXPECT_THAT(names_in(folder()), UnorderedElementsAre("small.json", "err"));
 }
 
+TEST_F(RenderCommand, WritesThePictureAloneWhereStandardStreamsAreClosed) {
+  ASSERT_EQ(run({"render", "small.json", "-q", "-o", "a.exr"}).exit_code, 0);
+  const std::string command =
+      "cd '" + folder().string() + "' && '" + METAMER_PROGRAM + "' render small.json -o b.exr <&- >&- 2>&-";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);
+  EXPECT_EQ(bytes("a.exr"), bytes("b.exr"));
+}
+
 TEST_F(RenderCommand, WarnsUnlessQuiet) {
   std::string scene(small_scene);
   scene.insert(scene.find("\"entities\": [") + 13, R"({"geometry": {"type": "mesh", "mesh": "flat"}},)");
