@@ -50,7 +50,7 @@ uint32_t JsonReader::integer(const Json::Value& value, std::string_view what, ui
   const bool good = value.isNumeric() && !value.isBool() && value.asDouble() >= low && value.asDouble() <= high &&
                     value.asDouble() == std::floor(value.asDouble());
   if (good) return static_cast<uint32_t>(value.asDouble());
-  expected(value, what, fmt::format("a whole number from {} to {}", low, high));
+  expected(value, what, low == high ? fmt::format("{}", low) : fmt::format("a whole number from {} to {}", low, high));
   return fallback;
 }
 
