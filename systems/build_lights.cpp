@@ -7,54 +7,12 @@
 #include <glm/matrix.hpp>
 #include <unordered_map>
 
-#include "engine/simd/portable_math.h"
-#include "engine/spectrum/rgb_fit.h"
 #include "systems/freeze.h"
 
 namespace metamer {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-
-void store_rotation(float (&to_world)[9], float (&to_local)[9], const glm::dmat3& rotation) {
-  const glm::dmat3 inverse = glm::inverse(rotation);
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) {
-      to_world[3 * row + column] = static_cast<float>(rotation[column][row]);
-      to_local[3 * row + column] = static_cast<float>(inverse[column][row]);
-    }
-}
-
-// Texels as sigmoid coefficients, and their luminance times the solid angle of a texel as the density.
-void build_image(const Image& image, Environment& environment) {
-  environment.width = image.width;
-  environment.height = image.height;
-  environment.mapping = image.mapping;
-  const size_t count = size_t{image.width} * image.height;
-  environment.texels.resize(4 * count);
-  std::vector<double> weights(count);
-  const Matrix3 to_xyz = rgb_to_xyz(image.color_space);
-  for (uint32_t y = 0; y < image.height; ++y) {
-    double ring = 1;
-    if (image.mapping == ImageMapping::latitude_longitude) {
-      const double top = portable::cos(pi * y / image.height), bottom = portable::cos(pi * (y + 1) / image.height);
-      ring = (top - bottom) * image.height / pi;
-    }
-    for (uint32_t x = 0; x < image.width; ++x) {
-      const size_t texel = size_t{y} * image.width + x;
-      const float* rgb = image.rgb.data() + 3 * texel;
-      const double scale = 2 * double{std::max({rgb[0], rgb[1], rgb[2]})};
-      if (scale > 0) {
-        const SigmoidFit fit = fit_sigmoid(image.color_space, {rgb[0] / scale, rgb[1] / scale, rgb[2] / scale});
-        for (int i = 0; i < 3; ++i) environment.texels[4 * texel + i] = static_cast<float>(fit.c[i]);
-      }
-      environment.texels[4 * texel + 3] = static_cast<float>(scale);
-      const double luminance = to_xyz[1][0] * rgb[0] + to_xyz[1][1] * rgb[1] + to_xyz[1][2] * rgb[2];
-      weights[texel] = std::max(luminance, 0.0) * ring;
-    }
-  }
-  environment.density = make_distribution_2d(weights, image.width, image.height);
-}
 
 LightRow light_at_infinity_or_point(const Light& light, const glm::dmat4& matrix) {
   LightRow row;
@@ -124,27 +82,20 @@ double scene_radius(const World& world) {
 }
 
 // Proportional to the light's power, as luminous flux; what chooses among lights.
-double power_of(const World& world, const LightRow& row, double radius, double image_mean) {
+double power_of(const World& world, const LightRow& row, double radius) {
   const double level = world.spectra.luminance(row.spectrum) * row.scale;
   switch (static_cast<LightShape>(row.shape)) {
     case LightShape::point: return 4 * pi * level;
     case LightShape::directional: return pi * radius * radius * level;
-    case LightShape::environment: return 4 * pi * pi * radius * radius * level * image_mean;
+    case LightShape::environment: return 4 * pi * pi * radius * radius * level * world.environment.mean_luminance;
     default: return pi * row.area * level * (row.two_sided != 0 ? 2 : 1);
   }
-}
-
-double mean_luminance(const Image& image) {
-  double sum = 0;
-  for (const float value : image.rgb) sum += value;
-  return sum / static_cast<double>(image.rgb.size());
 }
 
 }  // namespace
 
 void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics) {
   const Table<Light>& table = scene.registry.table<Light>();
-  double image_mean = 1;
   scene.registry.each<Light>([&](Entity entity, uint32_t table_row) {
     const Light light = table.get(table_row);
     if (light.kind == LightKind::area) {
@@ -160,11 +111,7 @@ void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, Worl
         return;
       }
       world.environment.light = static_cast<uint32_t>(world.lights.size());
-      store_rotation(world.environment.to_world, world.environment.to_local, glm::dmat3(matrix));
-      if (light.image != no_index) {
-        build_image(scene.images[light.image], world.environment);
-        image_mean = mean_luminance(scene.images[light.image]);
-      }
+      build_environment(light.image == no_index ? nullptr : &scene.images[light.image], matrix, world.environment);
     }
     world.lights.push_back(light_at_infinity_or_point(light, matrix));
   });
@@ -172,7 +119,7 @@ void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, Worl
   const double radius = scene_radius(world);
   std::vector<double> power(world.lights.size());
   double total = 0;
-  for (size_t i = 0; i < power.size(); ++i) total += power[i] = power_of(world, world.lights[i], radius, image_mean);
+  for (size_t i = 0; i < power.size(); ++i) total += power[i] = power_of(world, world.lights[i], radius);
   if (!(total > 0)) {
     // Nothing shines: without lights there is nothing to sample.
     world.lights.clear();
