@@ -27,6 +27,7 @@ TEST_F(Reports, StatsHoldEveryDocumentedNumber) {
   EXPECT_EQ(stats["threads"].asUInt(), 2u);
   EXPECT_EQ(stats["interrupted"].asBool(), false);
   EXPECT_LE(stats["lane_fill"].asDouble(), 1);
+  EXPECT_LE(stats["embree_share"].asDouble(), 1);
   EXPECT_NEAR(stats["embree_share"].asDouble(), stats["embree_seconds"].asDouble() / stats["cpu_seconds"].asDouble(),
               1e-6);
   EXPECT_GT(stats["first_pixel_seconds"].asDouble(),
