@@ -26,6 +26,13 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   # The lowest machine. With this baseline Highway 1.0.3 compiles exactly SSE4, AVX2 and AVX3.
   target_compile_options(metamer_flags INTERFACE -march=x86-64-v2 -maes -mpclmul)
 endif()
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+  # NEON with AES, as Highway's NEON target wants it. Not SVE: vectors are members of structs here, which SVE's, of a
+  # size unknown to the compiler, cannot be.
+  target_compile_options(metamer_flags INTERFACE -march=armv8-a+crypto)
+  target_compile_definitions(metamer_flags INTERFACE
+                             "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
+endif()
 if(METAMER_SANITIZE)
   target_compile_options(metamer_flags INTERFACE -fsanitize=${METAMER_SANITIZE} -fno-sanitize-recover=all
                          -fno-omit-frame-pointer -g)

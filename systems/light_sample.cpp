@@ -126,13 +126,13 @@ HWY_INLINE LightSample select(MF mask, const LightSample& yes, const LightSample
 HWY_INLINE LightSample sample_light(const World& world, const LightFields& light, const Vec3& from, VF u, VF v) {
   const FloatTag d;
   const VU shape = light.word(offsetof(LightRow, shape));
-  LightSample sample{};
+  const VF zero = hn::Zero(d);
+  LightSample sample{{zero, zero, zero}, zero, zero, zero, zero, zero};
   const MF area = float_mask(hn::Lt(shape, splat_u(static_cast<uint32_t>(LightShape::point))));
   if (!hn::AllFalse(d, area)) sample_area(light, shape, from, u, v, sample);
   const MF sphere = is_shape(shape, LightShape::sphere);
-  LightSample other{};
+  LightSample other = sample;
   if (!hn::AllFalse(d, sphere)) {
-    other = sample;
     sample_sphere_cone(light, from, u, v, other);
     sample = select(sphere, other, sample);
   }

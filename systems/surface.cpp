@@ -197,11 +197,15 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     const VU kind = gather(world.objects.kind.data(), object);
     const MF quadric = hn::And(live, float_mask(hn::Ne(kind, splat_u(static_cast<uint32_t>(ShapeKind::mesh)))));
     const bool any_quadric = world.has_quadrics && !hn::AllFalse(FloatTag(), quadric);
-    Surface s{};
-    if (!any_quadric || !hn::AllFalse(FloatTag(), hn::AndNot(quadric, live)))
-      s = triangle_surface(world, origin, direction, object, primitive, hn::AndNot(quadric, live));
-    if (any_quadric) {
+    const MF triangle = hn::AndNot(quadric, live);
+    Surface s;
+    if (!any_quadric) {
+      s = triangle_surface(world, origin, direction, object, primitive, triangle);
+    } else {
       const Surface q = quadric_surface(world, origin, direction, object, gather(hits.distance, path));
+      s = q;
+      if (!hn::AllFalse(FloatTag(), triangle))
+        s = triangle_surface(world, origin, direction, object, primitive, triangle);
       s.position = if_then_else(quadric, q.position, s.position);
       s.normal = if_then_else(quadric, q.normal, s.normal);
       s.shading_normal = if_then_else(quadric, q.shading_normal, s.shading_normal);
