@@ -1,0 +1,248 @@
+// Directions that light_sample draws, against the density that emission believes in: the two sides of multiple
+// importance sampling. Emission's side is read off its weight: a ray that claims to be drawn with density 1 and meets a
+// light of radiance L adds L / (1 + p^2).
+#include <random>
+#include <span>
+
+#include "tests/support/chi_square.h"
+#include "tests/systems/support/radiances.h"
+
+namespace metamer {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+struct Probe {
+  glm::dvec3 direction;
+  double density = 0;   // per solid angle, emission's
+  double distance = 0;  // of what was met
+};
+
+// What emission believes of directions from one point.
+class Emission {
+ public:
+  Emission(const World& world, const glm::dvec3& from) : world_(world), from_(from) {}
+
+  // At most batch_capacity directions.
+  void probe(std::span<Probe> probes) {
+    PathStream& paths = batch_.paths;
+    paths.size = batch_.slots.size = static_cast<uint32_t>(probes.size());
+    for (uint32_t i = 0; i < padded_to_lanes(paths.size); ++i) {
+      const glm::dvec3 direction = probes[std::min<size_t>(i, probes.size() - 1)].direction;
+      for (int c = 0; c < 3; ++c) {
+        paths.origin[c][i] = static_cast<float>(from_[c]);
+        paths.direction[c][i] = static_cast<float>(direction[c]);
+      }
+      for (size_t j = 0; j < 4; ++j) {
+        paths.lambda_nm[j][i] = 550;
+        paths.throughput[j][i] = 1;
+        batch_.slots.radiance[j][i] = 0;
+      }
+      paths.pdf_direction[i] = paths.eta_scale[i] = 1;
+      paths.pixel_seed[i] = paths.index[i] = 0;
+      paths.slot[i] = i;
+    }
+    double seconds = 0;
+    intersect_bounce(world_, paths, batch_.hits, &seconds);
+    sort_hits(world_, paths.size, batch_.hits, batch_.order, batch_.shade.groups);
+    batch_.shade.size = batch_.shade.groups.back().padded_end();
+    surface(world_, paths, batch_.hits, batch_.order, batch_.shade);
+    emission(world_, batch_.shade, batch_.slots);
+    for (uint32_t i = 0; i < paths.size; ++i) {
+      const double seen = double{batch_.slots.radiance[0][i]};
+      probes[i].density = seen > 0 ? std::sqrt(std::max(0.0, 1 / seen - 1)) : 0;
+      probes[i].distance = batch_.hits.object[i] == no_index ? INFINITY : double{batch_.hits.distance[i]};
+    }
+  }
+
+ private:
+  const World& world_;
+  glm::dvec3 from_;
+  Batch batch_;
+};
+
+struct Draw {
+  glm::dvec3 direction;
+  double density, distance, radiance;
+};
+
+std::vector<Draw> draw_lights(const World& world, const glm::dvec3& from, uint32_t count) {
+  std::vector<Draw> draws;
+  Batch batch;
+  ShadeStream& shade = batch.shade;
+  for (Group& group : shade.groups) group = {0, 0};
+  for (uint32_t first = 0; first < count; first += batch_capacity) {
+    shade.size = batch_capacity;
+    shade.groups[0] = {0, batch_capacity};
+    for (uint32_t i = 0; i < batch_capacity; ++i) {
+      const uint32_t k = first + i;
+      const PointKeyScalar key = make_point_key(k & 0xff, k >> 8, 0, 5);  // a pixel each: independent draws
+      shade.pixel_seed[i] = key.pixel_seed;
+      shade.index[i] = key.index_reversed;
+      for (int c = 0; c < 3; ++c) shade.position[c][i] = static_cast<float>(from[c]);
+      for (size_t j = 0; j < 4; ++j) shade.lambda_nm[j][i] = 550;
+      shade.slot[i] = i;
+    }
+    light_sample(world, 0, shade);
+    for (uint32_t i = 0; i < batch_capacity; ++i)
+      draws.push_back({{shade.light_direction[0][i], shade.light_direction[1][i], shade.light_direction[2][i]},
+                       double{shade.light_pdf[i]},
+                       double{shade.light_distance[i]},
+                       double{shade.light_radiance[0][i]}});
+  }
+  return draws;
+}
+
+size_t direction_bin(const glm::dvec3& d, int bins) {
+  const auto cell = [&](double t) { return std::clamp(static_cast<int>(t * bins), 0, bins - 1); };
+  return static_cast<size_t>(cell((d.z + 1) / 2) * bins + cell((std::atan2(d.y, d.x) + pi) / (2 * pi)));
+}
+
+// Checks the world's lights, all of radiance 1, from `from`: every draw that reaches its light carries 1 / density,
+// emission states the same density for it, the histogram of directions is that density, which integrates to `seen` (1:
+// all of the light's points are in sight).
+void expect_sides_agree(SceneBuilder& b, const glm::dvec3& from, double seen) {
+  b.look_at({0, 0, 50}, {0, 0, 0}, perspective(40));
+  const std::unique_ptr<World> world = b.freeze();
+  constexpr uint32_t draws_wanted = 20 * batch_capacity;
+  const std::vector<Draw> draws = draw_lights(*world, from, draws_wanted);
+  Emission emission(*world, from);
+  constexpr int bins = 24, cells = 24;
+  std::vector<double> expected(bins * bins, 0.0), observed(bins * bins, 0.0);
+  size_t compared = 0, differ = 0, reached_all = 0;
+  std::vector<Probe> probes(batch_capacity);
+  for (size_t first = 0; first < draws.size(); first += probes.size()) {
+    for (size_t i = 0; i < probes.size(); ++i) probes[i].direction = draws[first + i].direction;
+    emission.probe(probes);
+    for (size_t i = 0; i < probes.size(); ++i) {
+      const Draw& draw = draws[first + i];
+      const bool reached = draw.radiance > 0 && (probes[i].distance >= 0.999 * draw.distance);
+      if (!reached) {
+        continue;
+      }
+      ++reached_all;
+      observed[direction_bin(draw.direction, bins)] += 1;
+      EXPECT_NEAR(draw.radiance * draw.density, 1, 1e-4);
+      // Towards a silhouette the two find slightly different points, with quite different densities.
+      if (draw.density > 50 || draw.density < 0.02) continue;
+      ++compared;
+      differ += std::abs(probes[i].density / draw.density - 1) > 0.01;
+    }
+  }
+  EXPECT_GT(compared, 0.5 * double(reached_all));
+  EXPECT_LE(double(differ), 0.002 * double(compared)) << "densities differ";
+  // Expected counts by a random point in each of 24 x 24 cells of each bin.
+  std::mt19937_64 generator(3);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  size_t filled = 0;
+  std::vector<size_t> bin_of(batch_capacity);
+  double total = 0;
+  const auto flush_probes = [&] {
+    if (filled == 0) return;
+    emission.probe({probes.data(), filled});
+    for (size_t i = 0; i < filled; ++i) {
+      const double share = probes[i].density * 4 * pi / (bins * bins * cells * cells);
+      expected[bin_of[i]] += share * draws_wanted;
+      total += share;
+    }
+    filled = 0;
+  };
+  for (int i = 0; i < bins * cells; ++i)
+    for (int j = 0; j < bins * cells; ++j) {
+      const double z = -1 + 2 * (i + uniform(generator)) / (bins * cells);
+      const double phi = -pi + 2 * pi * (j + uniform(generator)) / (bins * cells), r = std::sqrt(1 - z * z);
+      probes[filled].direction = {r * std::cos(phi), r * std::sin(phi), z};
+      bin_of[filled] = direction_bin(probes[filled].direction, bins);
+      ++filled;
+      if (filled == probes.size()) flush_probes();
+    }
+  flush_probes();
+  EXPECT_NEAR(total, seen, 0.01);
+  EXPECT_NEAR(double(reached_all) / draws_wanted, seen, 0.015);
+  observed.push_back(draws_wanted - double(reached_all));
+  expected.push_back(std::max(0.0, (1 - total) * draws_wanted));
+  if (seen == 1) observed.pop_back(), expected.pop_back();
+  EXPECT_GT(chi_square_test(observed, expected, 100).p_value, chi_square_level);
+}
+
+SceneBuilder empty() { return {4, 4, 1, 1}; }
+
+TEST(LightSample, TrianglesOfARectangle) {
+  SceneBuilder b = empty();
+  b.emit(b.add(rectangle(2, 1.5f), b.diffuse(0.0), moved(0.3, 0, 1) * turned(160, 1, 0.3, 0)), unit_spectrum, 1);
+  expect_sides_agree(b, {0, 0, 0}, 1);
+}
+
+TEST(LightSample, ARectangleFromBehindIsDarkUnlessTwoSided) {
+  for (const bool two_sided : {false, true}) {
+    SceneBuilder b = empty();
+    b.emit(b.add(rectangle(2, 1.5f), b.diffuse(0.0), moved(0.3, 0, 1)), unit_spectrum, 1, two_sided);
+    if (two_sided) {
+      expect_sides_agree(b, {0, 0, 0}, 1);
+    } else {
+      b.look_at({0, 0, 50}, {0, 0, 0}, perspective(40));
+      for (const Draw& draw : draw_lights(*b.freeze(), {0, 0, 0}, batch_capacity)) EXPECT_EQ(draw.radiance, 0);
+    }
+  }
+}
+
+TEST(LightSample, ASphereFromOutside) {
+  SceneBuilder b = empty();
+  b.emit(b.add(sphere(1), b.diffuse(0.0), moved(0.4, 1.2, -0.5)), unit_spectrum, 1);
+  expect_sides_agree(b, {0, 0, 0}, 1);
+}
+
+TEST(LightSample, ASphereFromInside) {
+  SceneBuilder b = empty();
+  Geometry shell = sphere(1);
+  shell.flip_normal = 1;
+  b.emit(b.add(shell, b.diffuse(0.0), moved(0.4, 0.3, -0.2)), unit_spectrum, 1);
+  expect_sides_agree(b, {0, 0, 0}, 1);
+}
+
+TEST(LightSample, AnEllipsoidFromInside) {
+  SceneBuilder b = empty();
+  const glm::dmat4 place = moved(0.2, 0.3, -0.2) * turned(50, 1, 0.2, 0.5) * stretched(1, -1.8, 0.7);
+  b.emit(b.add(sphere(1), b.diffuse(0.0), place), unit_spectrum, 1, true);
+  expect_sides_agree(b, {0, 0, 0}, 1);
+}
+
+TEST(LightSample, ADiskWithAHole) {
+  SceneBuilder b = empty();
+  const glm::dmat4 place = moved(0.2, 0.9, -0.2) * turned(110, 1, 0.2, 0.5) * stretched(1, 1.8, 1);
+  b.emit(b.add(disk(1, 0.4f), b.diffuse(0.0), place), unit_spectrum, 1, true);
+  expect_sides_agree(b, {0, 0, 0}, 1);
+}
+
+TEST(LightSample, AConstantSkyBesideALamp) {
+  SceneBuilder b = empty();
+  b.light(LightKind::environment, unit_spectrum, 1);
+  // The lamp hides a part of the sky.
+  b.emit(b.add(sphere(1), b.diffuse(0.0), moved(0.5, 1.6, 0)), unit_spectrum, 1);
+  b.look_at({0, 0, 50}, {0, 0, 0}, perspective(40));
+  const std::unique_ptr<World> world = b.freeze();
+  const double sky = world->lights[world->environment.light].choice_probability;
+  const double hidden = (1 - std::sqrt(1 - 1 / (0.25 + 2.56))) / 2;
+  SceneBuilder again = empty();
+  again.light(LightKind::environment, unit_spectrum, 1);
+  again.emit(again.add(sphere(1), again.diffuse(0.0), moved(0.5, 1.6, 0)), unit_spectrum, 1);
+  expect_sides_agree(again, {0, 0, 0}, 1 - sky * hidden);
+}
+
+TEST(LightSample, ImagesOfBothMappings) {
+  for (const ImageMapping mapping : {ImageMapping::latitude_longitude, ImageMapping::equal_area}) {
+    // Black or one grey: radiance is 0 or 1, and where it is 1 the density must be right.
+    Image image;
+    image.mapping = mapping;
+    image.width = image.height = 8;
+    for (uint32_t y = 0; y < 8; ++y)
+      for (uint32_t x = 0; x < 8; ++x)
+        for (int c = 0; c < 3; ++c) image.rgb.push_back((x * 5 + y * 3) % 7 < 3 ? 1.0f : 0.0f);
+    SceneBuilder b = empty();
+    b.environment(image, 1, turned(70, 0.3, 0.5, 1));
+    expect_sides_agree(b, {0, 0, 0}, 1);
+  }
+}
+
+}  // namespace
+}  // namespace metamer
