@@ -180,9 +180,11 @@ void build_accelerator(World& world) {
   accelerator->root = new_scene(device);
   std::unordered_map<uint32_t, RTCScene> shared;  // by first triangle
   for (uint32_t object = 0; object < world.objects.size(); ++object) {
+    const bool is_mesh = world.objects.kind[object] == static_cast<uint32_t>(ShapeKind::mesh);
+    if (is_mesh && world.objects.triangle_count[object] == 0) continue;  // its id stays free
     RTCGeometry geometry = nullptr;
     const uint32_t placement = world.objects.placement[object];
-    if (world.objects.kind[object] != static_cast<uint32_t>(ShapeKind::mesh)) {
+    if (!is_mesh) {
       geometry = quadric_geometry(*accelerator, world, object);
     } else if (placement == 0) {
       geometry = triangle_geometry(world, device, object);
