@@ -17,7 +17,10 @@ std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   build_lights(scene, to_world, *world, diagnostics);
   build_camera(scene, to_world, *world, diagnostics);
   if (world->zero_area_triangles > 0)
-    diagnostics.warning({}, fmt::format("{} triangles have no area and are never hit", world->zero_area_triangles));
+    diagnostics.warning({}, fmt::format("{} no area and never hit",
+                                        world->zero_area_triangles == 1
+                                            ? std::string("1 triangle has")
+                                            : fmt::format("{} triangles have", world->zero_area_triangles)));
   if (diagnostics.has_errors()) return nullptr;
   build_accelerator(*world);
   return world;
