@@ -31,15 +31,20 @@ Cell hilbert_cell(uint32_t n, uint64_t d) {
 std::vector<TileRect> make_tiles(uint32_t width, uint32_t height, uint32_t size) {
   size = (std::max(size, 1u) + 3) / 4 * 4;
   const uint32_t columns = (width + size - 1) / size, rows = (height + size - 1) / size;
-  const uint32_t side = std::bit_ceil(std::max(columns, rows));
+  // One Hilbert curve per square along the longer side: each ends beside where the next begins.
+  const bool wide = columns >= rows;
+  const uint32_t length = std::max(columns, rows), breadth = std::min(columns, rows);
+  const uint32_t side = std::bit_ceil(breadth);
   std::vector<TileRect> tiles;
   tiles.reserve(size_t{columns} * rows);
-  for (uint64_t d = 0; d < uint64_t{side} * side; ++d) {
-    const Cell cell = hilbert_cell(side, d);
-    if (cell.x >= columns || cell.y >= rows) continue;
-    const uint32_t x = cell.x * size, y = cell.y * size;
-    tiles.push_back({x, y, std::min(x + size, width), std::min(y + size, height)});
-  }
+  for (uint32_t square = 0; square < length; square += side)
+    for (uint64_t d = 0; d < uint64_t{side} * side; ++d) {
+      const Cell cell = hilbert_cell(side, d);
+      const uint32_t along = square + cell.x, across = cell.y;
+      if (along >= length || across >= breadth) continue;
+      const uint32_t x = (wide ? along : across) * size, y = (wide ? across : along) * size;
+      tiles.push_back({x, y, std::min(x + size, width), std::min(y + size, height)});
+    }
   return tiles;
 }
 
