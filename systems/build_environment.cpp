@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
@@ -35,6 +36,14 @@ TexelColumns split_channels(const Image& image) {
   return columns;
 }
 
+// The rotation (or mirrored one) in a matrix, by Gram and Schmidt: directions have no size to be scaled.
+glm::dmat3 orthonormal(const glm::dmat3& m) {
+  const glm::dvec3 x = glm::normalize(m[0]);
+  const glm::dvec3 y = glm::normalize(m[1] - x * glm::dot(x, m[1]));
+  const glm::dvec3 z = glm::cross(x, y);
+  return {x, y, glm::dot(z, m[2]) < 0 ? -z : z};
+}
+
 struct FitContext {
   ColorSpace space;
   TexelColumns& columns;
@@ -60,7 +69,7 @@ double ring_weight(const Image& image, uint32_t y) {
 }  // namespace
 
 void build_environment(const Image* image, const glm::dmat4& to_world, Environment& environment) {
-  const glm::dmat3 rotation(to_world), inverse = glm::inverse(rotation);
+  const glm::dmat3 rotation = orthonormal(glm::dmat3(to_world)), inverse = glm::transpose(rotation);
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column) {
       environment.to_world[3 * row + column] = static_cast<float>(rotation[column][row]);
