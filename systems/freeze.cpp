@@ -17,7 +17,7 @@ std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   build_lights(scene, to_world, *world, diagnostics);
   build_camera(scene, to_world, *world, diagnostics);
   if (world->zero_area_triangles > 0)
-    diagnostics.warning({}, fmt::format("{} no area and never hit",
+    diagnostics.warning({}, fmt::format("{} no area and cannot be hit",
                                         world->zero_area_triangles == 1
                                             ? std::string("1 triangle has")
                                             : fmt::format("{} triangles have", world->zero_area_triangles)));
