@@ -78,18 +78,45 @@ HWY_INLINE ImagePoint image_point(const Environment& environment, const Vec3& lo
   return environment.mapping == ImageMapping::equal_area ? equal_area_point(local) : latitude_longitude_point(local);
 }
 
-// The image's texel at (u, v), as a factor on the environment's spectrum.
-HWY_INLINE void environment_image(const Environment& environment, VF u, VF v, const VF lambda_nm[4], VF factor[4]) {
-  const VI x = hn::ConvertTo(IntTag(), hn::Mul(u, splat(static_cast<float>(environment.width))));
-  const VI y = hn::ConvertTo(IntTag(), hn::Mul(v, splat(static_cast<float>(environment.height))));
-  const VI column = hn::Min(x, hn::Set(IntTag(), static_cast<int>(environment.width) - 1));
-  const VI row = hn::Min(y, hn::Set(IntTag(), static_cast<int>(environment.height) - 1));
+// factor += weight times the spectrum of a texel.
+HWY_INLINE void add_texel(const Environment& environment, VI column, VI row, VF weight, const VF lambda_nm[4],
+                          VF factor[4]) {
   const VI texel = hn::Add(hn::Mul(row, hn::Set(IntTag(), static_cast<int>(environment.width))), column);
   const VI at = hn::ShiftLeft<2>(texel);
   const float* texels = environment.texels.data();
   const VF c0 = gather(texels, at), c1 = gather(texels + 1, at), c2 = gather(texels + 2, at);
-  const VF scale = gather(texels + 3, at);
-  for (int j = 0; j < 4; ++j) factor[j] = hn::Mul(scale, sigmoid_polynomial(c0, c1, c2, lambda_nm[j]));
+  const VF scale = hn::Mul(weight, gather(texels + 3, at));
+  for (int j = 0; j < 4; ++j) factor[j] = hn::MulAdd(scale, sigmoid_polynomial(c0, c1, c2, lambda_nm[j]), factor[j]);
+}
+
+// The image at (u, v), as a factor on the environment's spectrum. latitude_longitude: linear between texels' centres,
+// around the circle and clamped at the poles. equal_area: the texel itself, as in pbrt, whose files these are.
+// The density of directions stays constant on a texel: where a dark texel next to a bright one is never chosen, rays
+// of the BSDF find its light with full weight.
+HWY_INLINE void environment_image(const Environment& environment, VF u, VF v, const VF lambda_nm[4], VF factor[4]) {
+  const IntTag di;
+  const int width = static_cast<int>(environment.width), height = static_cast<int>(environment.height);
+  const VF x = hn::Mul(u, splat(static_cast<float>(width))), y = hn::Mul(v, splat(static_cast<float>(height)));
+  const VI last_column = hn::Set(di, width - 1), last_row = hn::Set(di, height - 1), zero = hn::Zero(di);
+  for (int j = 0; j < 4; ++j) factor[j] = hn::Zero(FloatTag());
+  if (environment.mapping == ImageMapping::equal_area) {
+    add_texel(environment, hn::Min(hn::ConvertTo(di, x), last_column), hn::Min(hn::ConvertTo(di, y), last_row),
+              splat(1.0f), lambda_nm, factor);
+    return;
+  }
+  const VF one = splat(1.0f), half = splat(0.5f);
+  const VF x_floor = hn::Floor(hn::Sub(x, half)), y_floor = hn::Floor(hn::Sub(y, half));
+  const VF right = hn::Sub(hn::Sub(x, half), x_floor), lower = hn::Sub(hn::Sub(y, half), y_floor);
+  const VI left = hn::ConvertTo(di, x_floor), top = hn::ConvertTo(di, y_floor);
+  const VI column0 = hn::IfThenElse(hn::Lt(left, zero), last_column, hn::Min(left, last_column));
+  const VI column1 = hn::IfThenElse(hn::Lt(left, last_column), hn::Add(left, hn::Set(di, 1)), zero);
+  const VI row0 = hn::Max(hn::Min(top, last_row), zero);
+  const VI row1 = hn::Max(hn::Min(hn::Add(top, hn::Set(di, 1)), last_row), zero);
+  const VF left_share = hn::Sub(one, right), upper_share = hn::Sub(one, lower);
+  add_texel(environment, column0, row0, hn::Mul(left_share, upper_share), lambda_nm, factor);
+  add_texel(environment, column1, row0, hn::Mul(right, upper_share), lambda_nm, factor);
+  add_texel(environment, column0, row1, hn::Mul(left_share, lower), lambda_nm, factor);
+  add_texel(environment, column1, row1, hn::Mul(right, lower), lambda_nm, factor);
 }
 
 // Density per solid angle of a world direction, the choice of the light apart.

@@ -72,11 +72,32 @@ struct Tracer {
     const glm::dvec2 uv = e.mapping == ImageMapping::equal_area
                               ? equal_area_uv(d)
                               : glm::dvec2(turn, std::acos(std::clamp(d.z, -1.0, 1.0)) / pi);
-    const uint32_t x = std::min(static_cast<uint32_t>(uv.x * e.width), e.width - 1);
-    const uint32_t y = std::min(static_cast<uint32_t>(uv.y * e.height), e.height - 1);
-    const float* texel = e.texels.data() + 4 * (size_t{y} * e.width + x);
-    for (size_t j = 0; j < 4; ++j) values[j] *= texel[3] * sigmoid_at(texel, lambda_nm[j]);
+    const Spectrum4 factor = environment_image(uv, lambda_nm);
+    for (size_t j = 0; j < 4; ++j) values[j] *= factor[j];
     return values;
+  }
+  // equal_area: the texel; latitude_longitude: linear between the centres of four, around the circle.
+  Spectrum4 environment_image(const glm::dvec2& uv, const Spectrum4& lambda_nm) const {
+    const Environment& e = world.environment;
+    Spectrum4 sum{};
+    const auto add = [&](double x, double y, double weight) {
+      const int width = static_cast<int>(e.width), height = static_cast<int>(e.height);
+      const int column = (static_cast<int>(std::floor(x)) + width) % width;
+      const int row = std::clamp(static_cast<int>(std::floor(y)), 0, height - 1);
+      const float* texel = e.texels.data() + 4 * (row * width + column);
+      for (size_t j = 0; j < 4; ++j) sum[j] += weight * texel[3] * sigmoid_at(texel, lambda_nm[j]);
+    };
+    const double x = uv.x * e.width, y = uv.y * e.height;
+    if (e.mapping == ImageMapping::equal_area) {
+      add(x, y, 1);
+      return sum;
+    }
+    const double right = x - 0.5 - std::floor(x - 0.5), lower = y - 0.5 - std::floor(y - 0.5);
+    add(x - 0.5, y - 0.5, (1 - right) * (1 - lower));
+    add(x + 0.5, y - 0.5, right * (1 - lower));
+    add(x - 0.5, y + 0.5, (1 - right) * lower);
+    add(x + 0.5, y + 0.5, right * lower);
+    return sum;
   }
   static double sigmoid_at(const float* c, double lambda_nm) {
     return sigmoid_polynomial({c[0], c[1], c[2]}, lambda_nm);
