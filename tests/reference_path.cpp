@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/mat4x4.hpp>
-#include <glm/matrix.hpp>
 #include <limits>
-#include <random>
 
 #include "engine/spectrum/observers.h"
-#include "engine/spectrum/rgb_fit.h"
 #include "systems/bsdf/reference.h"
-#include "tests/reference_scene.h"
+#include "tests/reference_lights.h"
 
 namespace metamer {
 namespace {
@@ -20,148 +15,15 @@ namespace {
 using reference::BsdfSample;
 using reference::BsdfValue;
 using reference::Direction;
-using reference::Spectrum4;
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Tracer {
   const World& world;
   ReferenceScene scene;
-  std::mt19937_64 generator;
-  std::uniform_real_distribution<double> uniform{0.0, 1.0};
+  ReferenceRandom random;
 
-  double random() { return uniform(generator); }
-
-  Tracer(const World& frozen, uint32_t seed) : world(frozen), scene(frozen), generator(seed) {}
-
-  Spectrum4 spectrum(uint32_t id, const Spectrum4& lambda_nm) const {
-    Spectrum4 values;
-    for (size_t j = 0; j < 4; ++j) values[j] = world.spectra.value(id, lambda_nm[j]);
-    return values;
-  }
-  Spectrum4 light_radiance(const LightRow& row, const Spectrum4& lambda_nm) const {
-    Spectrum4 values = spectrum(row.spectrum, lambda_nm);
-    for (double& value : values) value *= row.scale;
-    return values;
-  }
-
-  // Clarberg 2008: the octahedron's unfolding with equal areas.
-  static glm::dvec2 equal_area_uv(const Vector& d) {
-    const double r = std::sqrt(1 - std::abs(d.z));
-    const double phi = std::atan2(std::abs(d.y), std::abs(d.x)) * 2 / pi;
-    double v = phi * r, u = r - v;
-    if (d.z < 0) {
-      const double folded = 1 - v;
-      v = 1 - u;
-      u = folded;
-    }
-    return {(std::copysign(u, d.x) + 1) / 2, (std::copysign(v, d.y) + 1) / 2};
-  }
-
-  Spectrum4 environment_radiance(const Vector& direction, const Spectrum4& lambda_nm) const {
-    const Environment& e = world.environment;
-    if (e.light == no_index) return {};
-    Spectrum4 values = light_radiance(world.lights[e.light], lambda_nm);
-    if (e.width == 0) return values;
-    Vector d;
-    for (int i = 0; i < 3; ++i) d[i] = glm::dot(read3(e.to_local + 3 * i), direction);
-    d = glm::normalize(d);
-    double turn = std::atan2(d.y, d.x) / (2 * pi);
-    if (turn < 0) turn += 1;
-    const glm::dvec2 uv = e.mapping == ImageMapping::equal_area
-                              ? equal_area_uv(d)
-                              : glm::dvec2(turn, std::acos(std::clamp(d.z, -1.0, 1.0)) / pi);
-    const Spectrum4 factor = environment_image(uv, lambda_nm);
-    for (size_t j = 0; j < 4; ++j) values[j] *= factor[j];
-    return values;
-  }
-  // equal_area: the texel; latitude_longitude: linear between the centres of four, around the circle.
-  Spectrum4 environment_image(const glm::dvec2& uv, const Spectrum4& lambda_nm) const {
-    const Environment& e = world.environment;
-    Spectrum4 sum{};
-    const auto add = [&](double x, double y, double weight) {
-      const int width = static_cast<int>(e.width), height = static_cast<int>(e.height);
-      const int column = (static_cast<int>(std::floor(x)) + width) % width;
-      const int row = std::clamp(static_cast<int>(std::floor(y)), 0, height - 1);
-      const float* texel = e.texels.data() + 4 * (row * width + column);
-      for (size_t j = 0; j < 4; ++j) sum[j] += weight * texel[3] * sigmoid_at(texel, lambda_nm[j]);
-    };
-    const double x = uv.x * e.width, y = uv.y * e.height;
-    if (e.mapping == ImageMapping::equal_area) {
-      add(x, y, 1);
-      return sum;
-    }
-    const double right = x - 0.5 - std::floor(x - 0.5), lower = y - 0.5 - std::floor(y - 0.5);
-    add(x - 0.5, y - 0.5, (1 - right) * (1 - lower));
-    add(x + 0.5, y - 0.5, right * (1 - lower));
-    add(x - 0.5, y + 0.5, (1 - right) * lower);
-    add(x + 0.5, y + 0.5, right * lower);
-    return sum;
-  }
-  static double sigmoid_at(const float* c, double lambda_nm) {
-    return sigmoid_polynomial({c[0], c[1], c[2]}, lambda_nm);
-  }
-
-  struct LightPoint {
-    Vector direction;
-    double distance = infinity;
-    double factor = 0;  // on the light's spectrum: what of it arrives, divided by the density
-  };
-
-  Vector random_on_sphere() {
-    const double z = 1 - 2 * random(), phi = 2 * pi * random(), r = std::sqrt(std::max(0.0, 1 - z * z));
-    return {r * std::cos(phi), r * std::sin(phi), z};
-  }
-
-  // One light, uniformly chosen among those that are not the environment; a point of it, uniformly by area (of the
-  // unit sphere it is the image of).
-  LightPoint sample_light(const Vector& from, uint32_t* chosen) {
-    std::vector<uint32_t> candidates;
-    for (uint32_t i = 0; i < world.lights.size(); ++i)
-      if (world.lights[i].shape != static_cast<uint32_t>(LightShape::environment)) candidates.push_back(i);
-    LightPoint sample;
-    if (candidates.empty()) return sample;
-    *chosen = candidates[std::min(static_cast<size_t>(random() * double(candidates.size())), candidates.size() - 1)];
-    const LightRow& row = world.lights[*chosen];
-    const double count = double(candidates.size());
-    const Vector p = read3(row.p), a = read3(row.axes), b = read3(row.axes + 3), c = read3(row.axes + 6);
-    const auto shape = static_cast<LightShape>(row.shape);
-    if (shape == LightShape::directional) return {glm::normalize(p), infinity, count};
-    if (shape == LightShape::point) {
-      const double d = glm::length(p - from);
-      return {(p - from) / d, d, count / (d * d)};
-    }
-    Vector at, area;  // the point, and the area vector per unit density
-    if (shape == LightShape::triangle) {
-      double u = random(), v = random();
-      if (u + v > 1) u = 1 - u, v = 1 - v;
-      at = p + a * u + b * v;
-      area = glm::cross(a, b) / 2.0;
-      if (glm::dot(area, read3(row.normal)) < 0) area = -area;
-    } else if (shape == LightShape::disk) {
-      double x = 0, y = 0, r2 = 2;
-      while (r2 > 1 || r2 < double{row.inner} * row.inner) {
-        x = 2 * random() - 1, y = 2 * random() - 1;
-        r2 = x * x + y * y;
-      }
-      at = p + a * x + b * y;
-      area = read3(row.normal) * (pi * (1 - double{row.inner} * row.inner) * glm::length(glm::cross(a, b)));
-    } else {
-      const Vector q = random_on_sphere();
-      const glm::dmat3 axes(a, b, c);
-      at = p + axes * q;
-      area = std::abs(glm::determinant(axes)) * (glm::transpose(glm::inverse(axes)) * q) * (4 * pi) *
-             double{row.normal_sign};
-    }
-    const double d = glm::length(at - from);
-    sample.direction = (at - from) / d;
-    sample.distance = d;
-    double projected = -glm::dot(area, sample.direction);
-    if (row.two_sided != 0) projected = std::abs(projected);
-    sample.factor = projected > 0 ? count * projected / (d * d) : 0;
-    return sample;
-  }
+  Tracer(const World& frozen, uint32_t seed) : world(frozen), scene(frozen), random(seed) {}
 
   struct LocalFrame {
     Vector x, y, z;
@@ -184,11 +46,11 @@ struct Tracer {
   Spectrum4 radiance(const Vector& origin, const Vector& direction, const Spectrum4& lambda_nm, bool together,
                      uint32_t events, bool sees_lights, uint32_t mask) {
     const ReferenceHit hit = scene.intersect(origin, direction, mask);
-    if (hit.object == no_index) return environment_radiance(direction, lambda_nm);
+    if (hit.object == no_index) return reference_environment(world, direction, lambda_nm);
     Spectrum4 sum{};
     if (sees_lights && hit.light != no_index) {
       const LightRow& row = world.lights[hit.light];
-      if (row.two_sided != 0 || glm::dot(direction, hit.outside) < 0) sum = light_radiance(row, lambda_nm);
+      if (row.two_sided != 0 || glm::dot(direction, hit.outside) < 0) sum = reference_radiance(world, row, lambda_nm);
     }
     if (events == 0) return sum;
     const Spectrum4 scattered = scatter(hit, direction, lambda_nm, together, events);
@@ -205,12 +67,12 @@ struct Tracer {
     if (kind == ShadeKind::absorber) return {};
     if (kind == ShadeKind::dielectric) {
       if (together && world.dielectric.dispersive[row] != 0) return disperse(hit, direction, lambda_nm, events);
-      const reference::DielectricOptics optics{spectrum(world.dielectric.eta[row], lambda_nm),
+      const reference::DielectricOptics optics{reference_spectrum(world, world.dielectric.eta[row], lambda_nm),
                                                world.dielectric.schlick[row] != 0, false};
       return go_on(hit, frame, reference::sample_dielectric(wo, optics, random()), lambda_nm, together, events);
     }
     if (kind == ShadeKind::diffuse) {
-      const Spectrum4 albedo = spectrum(world.diffuse.reflectance[row], lambda_nm);
+      const Spectrum4 albedo = reference_spectrum(world, world.diffuse.reflectance[row], lambda_nm);
       const Spectrum4 lit =
           direct(hit, frame, lambda_nm, [&](const Direction& wi) { return reference::eval_diffuse(wo, albedo, wi); });
       const double u = random(), v = random();
@@ -220,8 +82,8 @@ struct Tracer {
         kind == ShadeKind::smooth_conductor
             ? reference::Roughness{}
             : reference::Roughness{world.conductor.alpha_x[row], world.conductor.alpha_y[row]};
-    const reference::ConductorOptics optics{spectrum(world.conductor.eta[row], lambda_nm),
-                                            spectrum(world.conductor.kappa[row], lambda_nm),
+    const reference::ConductorOptics optics{reference_spectrum(world, world.conductor.eta[row], lambda_nm),
+                                            reference_spectrum(world, world.conductor.kappa[row], lambda_nm),
                                             world.conductor.schlick[row] != 0};
     Spectrum4 lit{};
     if (kind == ShadeKind::rough_conductor)
@@ -247,12 +109,12 @@ struct Tracer {
   Spectrum4 direct(const ReferenceHit& hit, const LocalFrame& frame, const Spectrum4& lambda_nm,
                    const Evaluate& evaluate) {
     uint32_t light = 0;
-    const LightPoint sample = sample_light(hit.position, &light);
+    const ReferenceLightPoint sample = reference_light(world, hit.position, random, &light);
     if (!(sample.factor > 0)) return {};
     const BsdfValue value = evaluate(frame.in(sample.direction));
     const double far = std::isinf(sample.distance) ? infinity : sample.distance * (1 - 1e-6);
     if (scene.intersect(hit.position, sample.direction, visible_to_shadows, far).object != no_index) return {};
-    Spectrum4 result = light_radiance(world.lights[light], lambda_nm);
+    Spectrum4 result = reference_radiance(world, world.lights[light], lambda_nm);
     for (size_t j = 0; j < 4; ++j) result[j] *= value.f_cos[j] * sample.factor;
     return result;
   }

@@ -1,0 +1,137 @@
+#include "tests/reference_lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "engine/spectrum/rgb_fit.h"
+
+namespace metamer {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Clarberg 2008: the octahedron's unfolding with equal areas.
+glm::dvec2 equal_area_uv(const Vector& d) {
+  const double r = std::sqrt(1 - std::abs(d.z));
+  const double phi = std::atan2(std::abs(d.y), std::abs(d.x)) * 2 / pi;
+  double v = phi * r, u = r - v;
+  if (d.z < 0) {
+    const double folded = 1 - v;
+    v = 1 - u;
+    u = folded;
+  }
+  return {(std::copysign(u, d.x) + 1) / 2, (std::copysign(v, d.y) + 1) / 2};
+}
+
+double sigmoid_at(const float* c, double lambda_nm) { return sigmoid_polynomial({c[0], c[1], c[2]}, lambda_nm); }
+
+// equal_area: the texel; latitude_longitude: linear between the centres of four, around the circle.
+Spectrum4 environment_image(const Environment& e, const glm::dvec2& uv, const Spectrum4& lambda_nm) {
+  Spectrum4 sum{};
+  const auto add = [&](double x, double y, double weight) {
+    const int width = static_cast<int>(e.width), height = static_cast<int>(e.height);
+    const int column = (static_cast<int>(std::floor(x)) + width) % width;
+    const int row = std::clamp(static_cast<int>(std::floor(y)), 0, height - 1);
+    const float* texel = e.texels.data() + 4 * (row * width + column);
+    for (size_t j = 0; j < 4; ++j) sum[j] += weight * texel[3] * sigmoid_at(texel, lambda_nm[j]);
+  };
+  const double x = uv.x * e.width, y = uv.y * e.height;
+  if (e.mapping == ImageMapping::equal_area) {
+    add(x, y, 1);
+    return sum;
+  }
+  const double right = x - 0.5 - std::floor(x - 0.5), lower = y - 0.5 - std::floor(y - 0.5);
+  add(x - 0.5, y - 0.5, (1 - right) * (1 - lower));
+  add(x + 0.5, y - 0.5, right * (1 - lower));
+  add(x - 0.5, y + 0.5, (1 - right) * lower);
+  add(x + 0.5, y + 0.5, right * lower);
+  return sum;
+}
+
+Vector random_on_sphere(ReferenceRandom& random) {
+  const double z = 1 - 2 * random(), phi = 2 * pi * random(), r = std::sqrt(std::max(0.0, 1 - z * z));
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+}  // namespace
+
+Spectrum4 reference_spectrum(const World& world, uint32_t id, const Spectrum4& lambda_nm) {
+  Spectrum4 values;
+  for (size_t j = 0; j < 4; ++j) values[j] = world.spectra.value(id, lambda_nm[j]);
+  return values;
+}
+Spectrum4 reference_radiance(const World& world, const LightRow& row, const Spectrum4& lambda_nm) {
+  Spectrum4 values = reference_spectrum(world, row.spectrum, lambda_nm);
+  for (double& value : values) value *= row.scale;
+  return values;
+}
+
+Spectrum4 reference_environment(const World& world, const Vector& direction, const Spectrum4& lambda_nm) {
+  const Environment& e = world.environment;
+  if (e.light == no_index) return {};
+  Spectrum4 values = reference_radiance(world, world.lights[e.light], lambda_nm);
+  if (e.width == 0) return values;
+  Vector d;
+  for (int i = 0; i < 3; ++i) d[i] = glm::dot(read3(e.to_local + 3 * i), direction);
+  d = glm::normalize(d);
+  double turn = std::atan2(d.y, d.x) / (2 * pi);
+  if (turn < 0) turn += 1;
+  const glm::dvec2 uv = e.mapping == ImageMapping::equal_area
+                            ? equal_area_uv(d)
+                            : glm::dvec2(turn, std::acos(std::clamp(d.z, -1.0, 1.0)) / pi);
+  const Spectrum4 factor = environment_image(e, uv, lambda_nm);
+  for (size_t j = 0; j < 4; ++j) values[j] *= factor[j];
+  return values;
+}
+ReferenceLightPoint reference_light(const World& world, const Vector& from, ReferenceRandom& random, uint32_t* chosen) {
+  std::vector<uint32_t> candidates;
+  for (uint32_t i = 0; i < world.lights.size(); ++i)
+    if (world.lights[i].shape != static_cast<uint32_t>(LightShape::environment)) candidates.push_back(i);
+  ReferenceLightPoint sample;
+  if (candidates.empty()) return sample;
+  *chosen = candidates[std::min(static_cast<size_t>(random() * double(candidates.size())), candidates.size() - 1)];
+  const LightRow& row = world.lights[*chosen];
+  const double count = double(candidates.size());
+  const Vector p = read3(row.p), a = read3(row.axes), b = read3(row.axes + 3), c = read3(row.axes + 6);
+  const auto shape = static_cast<LightShape>(row.shape);
+  if (shape == LightShape::directional) return {glm::normalize(p), infinity, count};
+  if (shape == LightShape::point) {
+    const double d = glm::length(p - from);
+    return {(p - from) / d, d, count / (d * d)};
+  }
+  Vector at, area;  // the point, and the area vector per unit density
+  if (shape == LightShape::triangle) {
+    double u = random(), v = random();
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    at = p + a * u + b * v;
+    area = glm::cross(a, b) / 2.0;
+    if (glm::dot(area, read3(row.normal)) < 0) area = -area;
+  } else if (shape == LightShape::disk) {
+    double x = 0, y = 0, r2 = 2;
+    while (r2 > 1 || r2 < double{row.inner} * row.inner) {
+      x = 2 * random() - 1, y = 2 * random() - 1;
+      r2 = x * x + y * y;
+    }
+    at = p + a * x + b * y;
+    area = read3(row.normal) * (pi * (1 - double{row.inner} * row.inner) * glm::length(glm::cross(a, b)));
+  } else {
+    const Vector q = random_on_sphere(random);
+    const glm::dmat3 axes(a, b, c);
+    at = p + axes * q;
+    area = std::abs(glm::determinant(axes)) * (glm::transpose(glm::inverse(axes)) * q) * (4 * pi) *
+           double{row.normal_sign};
+  }
+  const double d = glm::length(at - from);
+  sample.direction = (at - from) / d;
+  sample.distance = d;
+  double projected = -glm::dot(area, sample.direction);
+  if (row.two_sided != 0) projected = std::abs(projected);
+  sample.factor = projected > 0 ? count * projected / (d * d) : 0;
+  return sample;
+}
+
+}  // namespace metamer

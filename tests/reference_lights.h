@@ -1,0 +1,39 @@
+// What the oracle knows of lights: their spectra, the sky, and a plain way to choose a point of them.
+#pragma once
+#include <limits>
+#include <random>
+
+#include "systems/bsdf/reference.h"
+#include "tests/reference_scene.h"
+
+namespace metamer {
+
+class ReferenceRandom {
+ public:
+  explicit ReferenceRandom(uint32_t seed) : generator_(seed) {}
+  double operator()() { return uniform_(generator_); }  // in [0, 1)
+
+ private:
+  std::mt19937_64 generator_;
+  std::uniform_real_distribution<double> uniform_{0.0, 1.0};
+};
+
+using reference::Spectrum4;
+
+Spectrum4 reference_spectrum(const World& world, uint32_t id, const Spectrum4& lambda_nm);
+// Of a light that is no image, W m^-2 sr^-1 nm^-1 (or what its kind is measured in).
+Spectrum4 reference_radiance(const World& world, const LightRow& row, const Spectrum4& lambda_nm);
+// From infinity, along a direction away from the scene.
+Spectrum4 reference_environment(const World& world, const Vector& direction, const Spectrum4& lambda_nm);
+
+struct ReferenceLightPoint {
+  Vector direction;
+  double distance = std::numeric_limits<double>::infinity();
+  double factor = 0;  // on the light's spectrum: what of it arrives, divided by the density
+};
+
+// One light, uniformly chosen among those that are not the environment; a point of it, uniformly by area (of the
+// unit sphere it is the image of). `chosen`: its row.
+ReferenceLightPoint reference_light(const World& world, const Vector& from, ReferenceRandom& random, uint32_t* chosen);
+
+}  // namespace metamer
