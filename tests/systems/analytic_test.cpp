@@ -145,5 +145,27 @@ TEST(Analytic, APlateShiftsTheRayBySnellsLaw) {
   }
 }
 
+// All rays of a film point meet on the plane of focus; at twice its depth they spread over an image of the lens.
+TEST(Analytic, AThinLensIsSharpAtItsFocusAndBlursBeyond) {
+  constexpr double focus = 3, lens = 0.5, lamp = 0.4;
+  for (const bool sharp : {true, false}) {
+    SceneBuilder b(4, 4, 4096, 0);
+    Camera camera = perspective(2);  // 0.105 m wide at the plane of focus
+    camera.lens_radius = static_cast<float>(lens);
+    camera.focal_distance = static_cast<float>(focus);
+    b.look_at({0, 0, 0}, {0, 0, -1}, camera);
+    const Geometry shape =
+        sharp ? rectangle(0.106f, 0.106f) : rectangle(static_cast<float>(lamp), static_cast<float>(lamp));
+    b.emit(b.add(shape, b.diffuse(0.0), moved(0, 0, sharp ? -focus : -2 * focus)), unit_spectrum, 1);
+    const std::vector<PathRadiance> paths = trace_radiances(*b.freeze());
+    if (sharp)
+      expect_every_path(
+          paths, [](double) { return 1.0; }, 1e-6);
+    if (!sharp)
+      expect_mean(
+          paths, [](double) { return lamp * lamp / (pi * lens * lens); }, 0.1);
+  }
+}
+
 }  // namespace
 }  // namespace metamer
