@@ -208,7 +208,7 @@ TEST(Freeze, LightFromInfinityIgnoresTheSizeOfItsTransform) {
   }
 }
 
-TEST(Freeze, LightsAreChosenByTheirPower) {
+TEST(Freeze, LightsAreChosenHalfByTheirPowerAndHalfAlike) {
   SceneBuilder b = view();
   b.emit(b.add(sphere(1), b.diffuse(0.0)), unit_spectrum, 1);  // pi 4 pi
   b.emit(b.add(sphere(1), b.diffuse(0.0), moved(4, 0, 0) * stretched(1, 1, 1.0)), unit_spectrum, 2);
@@ -219,7 +219,21 @@ TEST(Freeze, LightsAreChosenByTheirPower) {
   double total = 0;
   for (const double p : power) total += p;
   ASSERT_EQ(world->lights.size(), 4u);
-  for (size_t i = 0; i < 4; ++i) EXPECT_NEAR(world->lights[i].choice_probability, power[i] / total, 1e-5) << i;
+  for (size_t i = 0; i < 4; ++i)
+    EXPECT_NEAR(world->lights[i].choice_probability, (power[i] / total + 0.25) / 2, 1e-5) << i;
+}
+
+TEST(Freeze, TheTrianglesOfALightShareItsHalfByPower) {
+  SceneBuilder b = view();
+  b.scene.meshes.push_back(cube_mesh());
+  const size_t triangles = b.scene.meshes[0].indices.size() / 3;
+  b.emit(b.add(mesh(0), b.diffuse(0.0)), unit_spectrum, 1);
+  b.light(LightKind::directional, unit_spectrum, 1e12f);
+  const std::unique_ptr<World> world = b.freeze();
+  ASSERT_EQ(world->lights.size(), triangles + 1);
+  for (size_t i = 0; i < triangles; ++i)
+    EXPECT_NEAR(world->lights[i].choice_probability, 0.25 / double(triangles), 1e-6) << i;
+  EXPECT_NEAR(world->lights[triangles].choice_probability, 0.75, 1e-6);
 }
 
 // The sky's power is that which falls on the scene, however the scene is made.
@@ -237,7 +251,7 @@ TEST(Freeze, TheSizeOfTheSceneCountsQuadricsAndInstances) {
     b.light(LightKind::directional, unit_spectrum, 1);
     b.light(LightKind::point, unit_spectrum, 1);
     const double sun = 3.14159265358979 * 3 * half * half, lamp = 4 * 3.14159265358979;
-    EXPECT_NEAR(b.freeze()->lights[0].choice_probability, sun / (sun + lamp), 1e-5);
+    EXPECT_NEAR(b.freeze()->lights[0].choice_probability, (sun / (sun + lamp) + 0.5) / 2, 1e-5);
   }
 }
 
