@@ -7,6 +7,8 @@ metamer_mend_dependencies()
 if(NOT embree_VERSION VERSION_GREATER_EQUAL 3.13)
   message(FATAL_ERROR "Embree 3.13 or later is needed; found ${embree_VERSION}")
 endif()
+# Debian's Little CMS comes without a CMake package.
+find_path(LCMS2_INCLUDE lcms2.h REQUIRED)
 if(METAMER_BENCH)
   find_package(benchmark REQUIRED)
 endif()
