@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/schedule/workers.h"
+#include "systems/tone_job.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "systems/tone_map.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 // The vocabulary follows foreach_target, which includes this file once per instruction set.
+#include "systems/tone_curve-inl.h"
 #include "systems/tone_map-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -32,8 +36,8 @@ HWY_INLINE VF dither_threshold(const Position& p) {
   return hn::Mul(hn::ConvertTo(FloatTag(), hn::BitCast(IntTag(), hn::ShiftRight<8>(phase))), splat(0x1p-24f));
 }
 
-HWY_INLINE VU quantise(VF linear, VF scale, VF threshold) {
-  const VF code = hn::Add(hn::Mul(srgb_encode(hn::Mul(linear, scale)), splat(255.0f)), threshold);
+HWY_INLINE VU quantise(VF linear, VF threshold) {
+  const VF code = hn::Add(hn::Mul(srgb_encode(linear), splat(255.0f)), threshold);
   const VI whole = hn::ConvertTo(IntTag(), code);  // towards zero
   return hn::BitCast(UintTag(), hn::Min(whole, hn::Set(IntTag(), 255)));
 }
@@ -44,19 +48,59 @@ void encode_column(size_t count, const float* HWY_RESTRICT linear, float* HWY_RE
     hn::Store(srgb_encode(hn::Load(tag, linear + i)), tag, encoded + i);
 }
 
-void encode_picture(const Picture& picture, float scale, bool dither, uint32_t* HWY_RESTRICT codes) {
+template <ToneCurve curve>
+HWY_INLINE Vec3 exposed(const Picture& picture, size_t i, const ToneJob& job) {
   const FloatTag tag;
-  const VU width = splat_u(picture.width), step = splat_u(static_cast<uint32_t>(hn::Lanes(tag)));
-  Position at = wrapped({hn::Iota(UintTag(), 0), hn::Zero(UintTag())}, width);
-  for (size_t i = 0; i < picture.pixel_count(); i += hn::Lanes(tag)) {
-    const VF threshold = dither ? dither_threshold(at) : splat(0.5f);
-    const VU r = quantise(hn::Load(tag, picture.r.data() + i), splat(scale), threshold);
-    const VU g = quantise(hn::Load(tag, picture.g.data() + i), splat(scale), threshold);
-    const VU b = quantise(hn::Load(tag, picture.b.data() + i), splat(scale), threshold);
+  const VF scale = splat(job.scale);
+  const Vec3 rgb = {tamed(hn::Mul(hn::Load(tag, picture.r.data() + i), scale)),
+                    tamed(hn::Mul(hn::Load(tag, picture.g.data() + i), scale)),
+                    tamed(hn::Mul(hn::Load(tag, picture.b.data() + i), scale))};
+  return tone_curve<curve>(rgb, job.constants);
+}
+
+template <ToneCurve curve>
+void encode_with(const Picture& picture, const ToneJob& job, size_t begin, size_t end, uint32_t* HWY_RESTRICT codes) {
+  const VU width = splat_u(picture.width), step = splat_u(static_cast<uint32_t>(hn::Lanes(FloatTag())));
+  const uint32_t x = static_cast<uint32_t>(begin % picture.width), y = static_cast<uint32_t>(begin / picture.width);
+  Position at = wrapped({hn::Iota(UintTag(), x), splat_u(y)}, width);
+  for (size_t i = begin; i < end; i += hn::Lanes(FloatTag())) {
+    const VF threshold = job.dither ? dither_threshold(at) : splat(0.5f);
+    const Vec3 rgb = exposed<curve>(picture, i, job);
+    const VU r = quantise(rgb.x, threshold), g = quantise(rgb.y, threshold), b = quantise(rgb.z, threshold);
     hn::Store(hn::Or(r, hn::Or(hn::ShiftLeft<8>(g), hn::ShiftLeft<16>(b))), UintTag(), codes + i);
     at = wrapped({hn::Add(at.x, step), at.y}, width);
   }
 }
+
+template <ToneCurve curve>
+void expose_with(Picture& picture, const ToneJob& job, size_t begin, size_t end) {
+  const FloatTag tag;
+  for (size_t i = begin; i < end; i += hn::Lanes(tag)) {
+    const Vec3 rgb = exposed<curve>(picture, i, job);
+    hn::Store(rgb.x, tag, picture.r.data() + i);
+    hn::Store(rgb.y, tag, picture.g.data() + i);
+    hn::Store(rgb.z, tag, picture.b.data() + i);
+  }
+}
+
+// Calls F<curve> of the run-time curve.
+#define METAMER_WITH_CURVE(F, ...)                                                          \
+  switch (job.curve) {                                                                      \
+    case ToneCurve::linear: return F<ToneCurve::linear>(__VA_ARGS__);                       \
+    case ToneCurve::reinhard: return F<ToneCurve::reinhard>(__VA_ARGS__);                   \
+    case ToneCurve::reinhard_extended: return F<ToneCurve::reinhard_extended>(__VA_ARGS__); \
+    case ToneCurve::hable: return F<ToneCurve::hable>(__VA_ARGS__);                         \
+    case ToneCurve::filmic: return F<ToneCurve::filmic>(__VA_ARGS__);                       \
+    case ToneCurve::agx: return F<ToneCurve::agx>(__VA_ARGS__);                             \
+  }
+
+void encode_pixels(const Picture& picture, const ToneJob& job, size_t begin, size_t end, uint32_t* codes) {
+  METAMER_WITH_CURVE(encode_with, picture, job, begin, end, codes)
+}
+void expose_pixels(Picture& picture, const ToneJob& job, size_t begin, size_t end) {
+  METAMER_WITH_CURVE(expose_with, picture, job, begin, end)
+}
+#undef METAMER_WITH_CURVE
 
 }  // namespace metamer::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -65,7 +109,8 @@ HWY_AFTER_NAMESPACE();
 namespace metamer {
 
 HWY_EXPORT(encode_column);
-HWY_EXPORT(encode_picture);
+HWY_EXPORT(encode_pixels);
+HWY_EXPORT(expose_pixels);
 
 namespace {
 
@@ -84,14 +129,47 @@ double power_of_two(double stops) {
   return std::ldexp(factor, static_cast<int>(whole));
 }
 
+ToneJob tone_job(const ToneSettings& settings) {
+  const float stops = std::isnan(settings.exposure_stops) ? 0 : std::clamp(settings.exposure_stops, -100.0f, 100.0f);
+  return {static_cast<float>(power_of_two(stops)), settings.dither, settings.curve, tone_constants(settings.display)};
+}
+
+// Calls pixels(begin, end) for all of `count`, in blocks on several threads. Blocks begin at multiples of every vector.
+template <class Pixels>
+void for_blocks(size_t count, uint32_t threads, Pixels&& pixels) {
+  constexpr size_t block = size_t{1} << 16;
+  struct Context {
+    Pixels& pixels;
+    size_t count;
+  } context{pixels, count};
+  const size_t blocks = (count + block - 1) / block;
+  const size_t workers = std::min<size_t>(threads == 0 ? available_threads() : threads, blocks);
+  run_units(
+      static_cast<uint32_t>(workers), blocks, Cancellation(),
+      [](void* shared, uint32_t, size_t unit) {
+        const Context& c = *static_cast<Context*>(shared);
+        c.pixels(unit * block, std::min(c.count, (unit + 1) * block));
+      },
+      &context);
+}
+
 }  // namespace
 
 CodedPicture tone_map(const Picture& picture, const ToneSettings& settings) {
   CodedPicture coded{picture.width, picture.height, Column<uint32_t>(picture.pixel_count())};
-  const float stops = std::isnan(settings.exposure_stops) ? 0 : std::clamp(settings.exposure_stops, -100.0f, 100.0f);
-  const float scale = static_cast<float>(power_of_two(stops));
-  HWY_DYNAMIC_DISPATCH(encode_picture)(picture, scale, settings.dither, coded.codes.data());
+  const ToneJob job = tone_job(settings);
+  for_blocks(picture.pixel_count(), settings.threads, [&](size_t begin, size_t end) {
+    HWY_DYNAMIC_DISPATCH(encode_pixels)(picture, job, begin, end, coded.codes.data());
+  });
   return coded;
+}
+
+void expose(Picture& picture, const ToneSettings& settings) {
+  const ToneJob job = tone_job(settings);
+  if (job.scale == 1 && job.curve == ToneCurve::linear) return;
+  for_blocks(picture.pixel_count(), settings.threads, [&](size_t begin, size_t end) {
+    HWY_DYNAMIC_DISPATCH(expose_pixels)(picture, job, begin, end);
+  });
 }
 
 void srgb_encode(size_t count, const float* linear, float* encoded) {

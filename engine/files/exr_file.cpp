@@ -210,7 +210,11 @@ FileError read_film_pixels(const std::string& path, Imf::InputPart part, Film& f
 FileError read_checkpoint(const std::string& path, Film& film, FrameHeader& header) {
   Imf::MultiPartInputFile file(path.c_str());
   const int number = find_film_part(file);
-  if (number < 0) return fmt::format("{}: holds no film part, so it is a picture but not a checkpoint", path);
+  if (number < 0)
+    return fmt::format(
+        "{}: holds no film part, so it is a picture but not a checkpoint; metamer render writes the film unless "
+        "--preview-only is given",
+        path);
   const Imf::Header& exr = file.header(number);
   const auto* version = exr.findTypedAttribute<Imf::IntAttribute>("filmLayoutVersion");
   if (version == nullptr || version->value() != film_layout_version)

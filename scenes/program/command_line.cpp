@@ -8,6 +8,7 @@
 #include "engine/diagnostics.h"
 #include "engine/film/film.h"
 #include "scenes/program/failure.h"
+#include "scenes/program/look_flags.h"
 #include "scenes/program/values.h"
 
 namespace metamer {
@@ -21,6 +22,7 @@ constexpr float largest_exposure = 100.0f;  // stops: what tone mapping takes
 constexpr const char* main_footer = R"(Examples:
   metamer render                                   the default scene
   metamer render cornell-box/scene.pbrt --spp 64   writes cornell-box.exr and cornell-box.png here
+  metamer develop cornell-box.exr -o look.png --tonemap agx --exposure auto
   metamer info kitchen.json
   metamer render --help                            all flags of a command
 
@@ -37,6 +39,16 @@ Examples:
   metamer render prism.json -o /tmp/prism.exr --size 1920x1080 --spp 1024
   metamer render prism.json --size 320x180 --spp 16 --exposure +1.5 --stats prism-stats.json --quiet)";
 
+constexpr const char* develop_footer =
+    R"(IN.exr is what metamer render wrote, without --preview-only: its film holds the exact sums. A PNG is encoded for
+the display, with an ICC profile for all but srgb; an EXR stays linear and takes exposure and tone curve too. Without
+--exposure a PNG takes that of the render, an EXR none.
+
+Examples:
+  metamer develop cornell-box.exr -o cornell-box.png
+  metamer develop lamp.exr -o lamp.png --white a --exposure auto --tonemap hable
+  metamer develop lamp.exr -o lamp-2020.exr --display rec2020 --white 3200 --adaptation bradford)";
+
 constexpr const char* info_footer = R"(Examples:
   metamer info kitchen/scene.pbrt
   metamer info prism.json --json)";
@@ -44,6 +56,11 @@ constexpr const char* info_footer = R"(Examples:
 // Flags as text, the way they were written.
 struct RenderTexts {
   std::string samples_per_pixel, size, threads, tile, seed, max_depth, exposure;
+  LookTexts look;
+};
+struct DevelopTexts {
+  std::string exposure, threads;
+  LookTexts look;
 };
 
 void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
@@ -55,7 +72,7 @@ void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
     render->add_option(name, value, text)->type_name(type)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   };
   option("-o,--output", arguments.exr, "OUT.exr", "Linear EXR, sRGB primaries, 1 = white of 1 cd/m^2");
-  option("--png", arguments.png, "OUT.png", "PNG, 8 bit, sRGB");
+  option("--png", arguments.png, "OUT.png", "PNG, 8 bit");
   option("--spp", texts.samples_per_pixel, "N", "Samples per pixel");
   option("--size", texts.size, "WxH", "Width and height in pixels");
   option("--threads", texts.threads, "N", "Threads; all that there are if not given");
@@ -63,9 +80,25 @@ void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
   option("--seed", texts.seed, "N", "Another seed, another noise");
   option("--max-depth", texts.max_depth, "N", "Scattering events on a path; 0 shows only what emits");
   option("--exposure", texts.exposure, "STOPS", "Brightens the PNG by powers of 2; the EXR stays as it is");
+  add_look_flags(*render, texts.look);
   option("--stats", arguments.stats, "STATS.json", "Write times, rays and memory there");
   render->add_flag("--preview-only", arguments.preview_only, "Leave the film's exact sums out of the EXR");
   render->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");
+}
+
+void add_develop(CLI::App& app, DevelopArguments& arguments, DevelopTexts& texts) {
+  CLI::App* develop = app.add_subcommand("develop", "Turn a rendered film into a picture again");
+  develop->footer(develop_footer);
+  develop->add_option("IN.exr", arguments.input, "EXR with a film, as metamer render writes it")->type_name("");
+  const auto option = [&](const std::string& name, std::string& value, const char* type, const std::string& text) {
+    develop->add_option(name, value, text)->type_name(type)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  };
+  option("-o,--output", arguments.output, "OUT", "The picture, .png or .exr");
+  option("--exposure", texts.exposure, "STOPS|auto",
+         "Brightens by powers of 2; auto: the geometric mean of luminance becomes 0.18");
+  add_look_flags(*develop, texts.look);
+  option("--threads", texts.threads, "N", "Threads; all that there are if not given; changes no pixel");
+  develop->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");
 }
 
 void add_info(CLI::App& app, InfoArguments& arguments) {
@@ -90,10 +123,12 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
 }
 
 std::string unknown_command(const std::string& word) {
-  return fmt::format("unknown command '{}'{}; there are render and info", word,
+  return fmt::format("unknown command '{}'{}; there are render, develop and info", word,
                      word.find('.') != std::string::npos ? fmt::format(" (did you mean 'metamer render {}'?)", word)
-                                                         : suggestion(word, {"render", "info"}));
+                                                         : suggestion(word, {"render", "develop", "info"}));
 }
+
+const char* input_name(const CLI::App& command) { return command.get_name() == "develop" ? "IN.exr" : "SCENE"; }
 
 // What no flag, scene or command took. After an unknown flag other words are no mistakes of their own: any of them may
 // have been meant as its value.
@@ -114,8 +149,9 @@ void note_extras(const CLI::App& app, const CLI::App* command, Mistakes& mistake
   if (command == nullptr)
     mistakes.push_back(unknown_command(unexpected));
   else
-    mistakes.push_back(fmt::format("unexpected argument '{}': one scene at a time, and '{}' was named already",
-                                   unexpected, command->get_option("SCENE")->as<std::string>()));
+    mistakes.push_back(fmt::format("unexpected argument '{}': one {} at a time, and '{}' was named already", unexpected,
+                                   command->get_name() == "develop" ? "film" : "scene",
+                                   command->get_option(input_name(*command))->as<std::string>()));
 }
 
 SceneOverrides parse_overrides(const CLI::App& render, const RenderTexts& texts, Mistakes& mistakes) {
@@ -138,6 +174,7 @@ SceneOverrides parse_overrides(const CLI::App& render, const RenderTexts& texts,
 
 void parse_render(const CLI::App& render, const RenderTexts& texts, RenderArguments& arguments, Mistakes& mistakes) {
   arguments.overrides = parse_overrides(render, texts, mistakes);
+  arguments.look = parse_look(render, texts.look, mistakes);
   if (render.count("--threads") > 0)
     arguments.threads = parse_count("--threads", texts.threads, 1, most_threads, mistakes).value_or(0);
   if (render.count("--tile") > 0)
@@ -147,6 +184,21 @@ void parse_render(const CLI::App& render, const RenderTexts& texts, RenderArgume
   for (const auto& [flag, name] : names)
     if (render.count(flag) > 0 && name->empty()) mistakes.push_back(fmt::format("{}: the file's name is empty", flag));
   if (render.count("SCENE") > 0 && arguments.scene.empty()) mistakes.push_back("the scene's name is empty");
+}
+
+void parse_develop(const CLI::App& develop, const DevelopTexts& texts, DevelopArguments& arguments,
+                   Mistakes& mistakes) {
+  arguments.look = parse_look(develop, texts.look, mistakes);
+  if (develop.count("--exposure") > 0) {
+    arguments.automatic_exposure = in_lower_case(texts.exposure) == "auto";
+    if (!arguments.automatic_exposure)
+      arguments.exposure_stops =
+          parse_real("--exposure", texts.exposure, -largest_exposure, largest_exposure, mistakes, " or auto");
+  }
+  if (develop.count("--threads") > 0)
+    arguments.threads = parse_count("--threads", texts.threads, 1, most_threads, mistakes).value_or(0);
+  if (arguments.input.empty()) mistakes.push_back("an EXR file was expected: metamer develop IN.exr -o OUT.png");
+  if (arguments.output.empty()) mistakes.push_back("--output: the name of a .png or .exr file was expected");
 }
 
 void fail_if_any(const Mistakes& mistakes) {
@@ -167,6 +219,9 @@ Command parse_command_line(int argc, char** argv) {
   RenderTexts render_texts;
   InfoArguments info_arguments;
   add_render(app, render_arguments, render_texts);
+  DevelopArguments develop_arguments;
+  DevelopTexts develop_texts;
+  add_develop(app, develop_arguments, develop_texts);
   add_info(app, info_arguments);
   for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
   try {
@@ -187,11 +242,14 @@ Command parse_command_line(int argc, char** argv) {
   if (command != nullptr) note_extras(app, nullptr, mistakes);  // flags before the command
   if (command != nullptr && command->get_name() == "render")
     parse_render(*command, render_texts, render_arguments, mistakes);
+  if (command != nullptr && command->get_name() == "develop")
+    parse_develop(*command, develop_texts, develop_arguments, mistakes);
   fail_if_any(mistakes);
   if (wants_version) return ShowVersion{};
   if (command == nullptr)
-    throw Failure(exit_wrong_input, "a command was expected: render or info (metamer --help says more)");
+    throw Failure(exit_wrong_input, "a command was expected: render, develop or info (metamer --help says more)");
   if (command->get_name() == "render") return render_arguments;
+  if (command->get_name() == "develop") return develop_arguments;
   return info_arguments;
 }
 

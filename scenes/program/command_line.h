@@ -5,6 +5,8 @@
 #include <string>
 #include <variant>
 
+#include "systems/write_frame.h"
+
 namespace metamer {
 
 // Flags that replace what the scene says.
@@ -20,7 +22,18 @@ struct RenderArguments {
   SceneOverrides overrides;
   uint32_t threads = 0;     // 0: all
   uint32_t tile_size = 32;  // pixels
+  Look look;                // of the PNG; all but its exposure and threads
   bool preview_only = false;
+  bool quiet = false;
+};
+
+struct DevelopArguments {
+  std::string input;   // an EXR with a film
+  std::string output;  // .png or .exr
+  Look look;           // all but its exposure and threads
+  std::optional<float> exposure_stops;
+  bool automatic_exposure = false;
+  uint32_t threads = 0;  // 0: all
   bool quiet = false;
 };
 
@@ -36,7 +49,7 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<RenderArguments, InfoArguments, ShowVersion, ShowText>;
+using Command = std::variant<RenderArguments, DevelopArguments, InfoArguments, ShowVersion, ShowText>;
 
 // Throws Failure (exit 2) with a line for each mistake.
 Command parse_command_line(int argc, char** argv);

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "engine/simd/instruction_set.h"
-#include "engine/spectrum/color.h"
 #include "scenes/library.h"
 #include "scenes/program/commands.h"
 #include "scenes/program/failure.h"
@@ -38,19 +37,16 @@ WriteSettings write_settings(const RenderArguments& arguments, const Outputs& ou
   WriteSettings write;
   write.exr_path = outputs.exr;
   write.png_path = outputs.png;
-  const Matrix3& matrix = xyz_to_rgb(ColorSpace::srgb);
-  for (size_t row = 0; row < 3; ++row)
-    for (size_t column = 0; column < 3; ++column)
-      write.xyz_to_rgb[row][column] = static_cast<float>(matrix[row][column]);
-  const std::array<double, 2> white = chromaticity(white_xyz(ColorSpace::srgb));
-  write.header.chromaticities.white = {static_cast<float>(white[0]), static_cast<float>(white[1])};
   write.header.software = "metamer " METAMER_VERSION;
   write.header.scene = title;
   write.header.seed = settings.seed;
   write.header.settings = {{"samples_per_pixel", std::to_string(settings.samples_per_pixel)},
                            {"max_depth", std::to_string(settings.max_depth)},
-                           {"filter", std::string(filter_name(settings.filter.kind))}};
-  write.tone.exposure_stops = settings.exposure_stops;
+                           {"filter", std::string(filter_name(settings.filter.kind))},
+                           {exposure_setting, fmt::format("{}", settings.exposure_stops)}};
+  write.look = arguments.look;
+  write.look.exposure_stops = settings.exposure_stops;
+  write.look.threads = arguments.threads;
   write.checkpoint = !arguments.preview_only;
   return write;
 }

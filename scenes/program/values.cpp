@@ -5,6 +5,8 @@
 #include <charconv>
 #include <limits>
 
+#include "engine/diagnostics.h"
+
 namespace metamer {
 namespace {
 
@@ -32,13 +34,30 @@ std::optional<uint32_t> parse_count(std::string_view flag, std::string_view text
 }
 
 std::optional<float> parse_real(std::string_view flag, std::string_view text, float least, float most,
-                                Mistakes& mistakes) {
+                                Mistakes& mistakes, std::string_view or_else) {
   std::string_view digits = text;
   if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
   const std::optional<float> value = number<float>(digits);
   if (value && *value >= least && *value <= most) return value;  // false for not-a-number
-  mistakes.push_back(fmt::format("{}: expected a number from {} to {}, not '{}'", flag, least, most, text));
+  mistakes.push_back(fmt::format("{}: expected a number from {} to {}{}, not '{}'", flag, least, most, or_else, text));
   return std::nullopt;
+}
+
+std::optional<size_t> parse_name(std::string_view flag, std::string_view text, std::span<const std::string_view> names,
+                                 Mistakes& mistakes) {
+  const std::string word = in_lower_case(text);
+  for (size_t i = 0; i < names.size(); ++i)
+    if (names[i] == word) return i;
+  mistakes.push_back(fmt::format("{}: unknown name '{}'{}; there are {}", flag, text, did_you_mean(word, names),
+                                 fmt::join(names, ", ")));
+  return std::nullopt;
+}
+
+std::string in_lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
 }
 
 std::optional<std::pair<uint32_t, uint32_t>> parse_size(std::string_view flag, std::string_view text,

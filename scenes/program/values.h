@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,9 +16,16 @@ using Mistakes = std::vector<std::string>;
 std::optional<uint32_t> parse_count(std::string_view flag, std::string_view text, uint32_t least, uint32_t most,
                                     Mistakes& mistakes);
 
-// A number within [least, most]; a leading + is allowed.
+// A number within [least, most]; a leading + is allowed. `or_else` is told where it is wrong: " or auto".
 std::optional<float> parse_real(std::string_view flag, std::string_view text, float least, float most,
-                                Mistakes& mistakes);
+                                Mistakes& mistakes, std::string_view or_else = {});
+
+// The place of a name among `names`, in lower or upper case.
+std::optional<size_t> parse_name(std::string_view flag, std::string_view text, std::span<const std::string_view> names,
+                                 Mistakes& mistakes);
+
+// ASCII letters only.
+std::string in_lower_case(std::string_view text);
 
 // WIDTHxHEIGHT, pixels, each from 1. Whether there is memory for them is asked later.
 std::optional<std::pair<uint32_t, uint32_t>> parse_size(std::string_view flag, std::string_view text,

@@ -67,9 +67,6 @@ int main() {
   WriteSettings settings;
   settings.exr_path = "example.exr";
   settings.png_path = "example.png";
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column)
-      settings.xyz_to_rgb[row][column] = static_cast<float>(xyz_to_rgb(ColorSpace::srgb)[row][column]);
   if (const FileError error = write_frame(film, settings)) {
     std::fprintf(stderr, "%s\n", error->c_str());
     return 1;

@@ -11,8 +11,6 @@
 namespace metamer {
 namespace {
 
-constexpr ColourMatrix identity = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-
 class WriteFrame : public testing::Test {
  protected:
   void SetUp() override {
@@ -54,7 +52,6 @@ TEST_F(WriteFrame, DevelopsMeansThroughTheMatrix) {
 
 TEST_F(WriteFrame, WritesWhatIsNamedAndTheSameBytesAgain) {
   WriteSettings settings;
-  settings.xyz_to_rgb = identity;
   settings.header.software = "metamer test";
   const Film film = small_film();
   for (const char* name : {"a", "b"}) {
@@ -75,7 +72,6 @@ TEST_F(WriteFrame, WritesWhatIsNamedAndTheSameBytesAgain) {
 
 TEST_F(WriteFrame, ReportsEachFileThatFailsAndWritesTheOther) {
   WriteSettings settings;
-  settings.xyz_to_rgb = identity;
   settings.exr_path = path("none/a.exr");
   settings.png_path = path("a.png");
   const FileError error = write_frame(small_film(), settings);

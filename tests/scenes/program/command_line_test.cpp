@@ -81,16 +81,17 @@ TEST_F(CommandLine, KnowsItsCommands) {
 }
 
 TEST_F(CommandLine, HelpHasExamplesAndGoesToStandardOutput) {
-  for (const Arguments& arguments :
-       std::vector<Arguments>{{"--help"}, {"render", "--help"}, {"info", "--help"}, {"render", "-h"}}) {
+  for (const Arguments& arguments : std::vector<Arguments>{
+           {"--help"}, {"render", "--help"}, {"info", "--help"}, {"develop", "--help"}, {"render", "-h"}}) {
     const ProgramResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(result.err, "");
     EXPECT_THAT(result.out, HasSubstr("Examples:\n  metamer "));
   }
   const std::string flags = run({"render", "--help"}).out;
-  for (const char* flag : {"-o,--output", "--png", "--spp", "--size", "--threads", "--tile", "--seed", "--max-depth",
-                           "--exposure", "--stats", "--quiet", "--preview-only"})
+  for (const char* flag :
+       {"-o,--output", "--png", "--spp", "--size", "--threads", "--tile", "--seed", "--max-depth", "--exposure",
+        "--display", "--white", "--adaptation", "--tonemap", "--stats", "--quiet", "--preview-only"})
     EXPECT_THAT(flags, HasSubstr(flag));
 }
 

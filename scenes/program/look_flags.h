@@ -1,0 +1,21 @@
+// The flags that say how a picture should look: the same words for every command.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "scenes/program/values.h"
+#include "systems/write_frame.h"
+
+namespace metamer {
+
+// Flags as text, the way they were written. Without --display, --white, --adaptation or --tonemap the look's defaults.
+struct LookTexts {
+  std::string display, white, adaptation, curve;
+};
+
+void add_look_flags(CLI::App& command, LookTexts& texts);
+
+// The look without its exposure, which the commands read themselves.
+Look parse_look(const CLI::App& command, const LookTexts& texts, Mistakes& mistakes);
+
+}  // namespace metamer

@@ -1,0 +1,94 @@
+#include "systems/display_colour.h"
+
+#include <algorithm>
+#include <array>
+
+#include "engine/simd/portable_math.h"
+#include "engine/spectrum/sources.h"
+
+namespace metamer {
+namespace {
+
+constexpr std::array<std::string_view, 3> displays = {"srgb", "p3", "rec2020"};
+constexpr std::array<std::string_view, 3> whites = {"d65", "d50", "a"};
+constexpr std::array<std::string_view, 2> adaptations = {"bradford", "cat16"};
+
+Color3 with_unit_luminance(Color3 xyz) {
+  const double Y = xyz[1];
+  for (double& v : xyz) v /= Y;
+  return xyz;
+}
+
+std::array<float, 2> rounded(const std::array<double, 2>& xy) {
+  return {static_cast<float>(xy[0]), static_cast<float>(xy[1])};
+}
+
+}  // namespace
+
+std::span<const std::string_view> display_names() { return displays; }
+std::span<const std::string_view> white_names() { return whites; }
+std::span<const std::string_view> adaptation_names() { return adaptations; }
+
+ColorSpace display_at(size_t index) {
+  constexpr std::array<ColorSpace, 3> spaces = {ColorSpace::srgb, ColorSpace::dci_p3, ColorSpace::rec2020};
+  return spaces[index];
+}
+
+std::string_view display_name(ColorSpace display) {
+  for (size_t i = 0; i < displays.size(); ++i)
+    if (display_at(i) == display) return displays[i];
+  return color_space_name(display);
+}
+
+Chromaticities display_chromaticities(ColorSpace display) {
+  const auto primary = [&](size_t channel) {
+    Color3 rgb = {};
+    rgb[channel] = 1;
+    return rounded(chromaticity(multiply(rgb_to_xyz(display), rgb)));
+  };
+  return {primary(0), primary(1), primary(2), rounded(chromaticity(white_xyz(display)))};
+}
+
+Color3 white_of_temperature(double kelvin) {
+  return with_unit_luminance(integrate_xyz(kelvin < daylight_min_kelvin ? blackbody(kelvin) : daylight(kelvin)));
+}
+
+Color3 white_at(size_t index) {
+  constexpr std::array<std::string_view, 3> illuminants = {"D65", "D50", "A"};
+  return with_unit_luminance(integrate_xyz(*cie_illuminant(illuminants[index])));
+}
+
+ColourMatrix display_matrix(ColorSpace display, const std::optional<Color3>& white, Adaptation adaptation) {
+  Matrix3 matrix = xyz_to_rgb(display);
+  if (white && *white != white_xyz(display))
+    matrix = multiply(matrix, adaptation_matrix(adaptation, *white, white_xyz(display)));
+  ColourMatrix rounded_matrix;
+  for (size_t row = 0; row < 3; ++row)
+    for (size_t column = 0; column < 3; ++column) rounded_matrix[row][column] = static_cast<float>(matrix[row][column]);
+  return rounded_matrix;
+}
+
+float automatic_exposure_stops(const Picture& picture, ColorSpace display) {
+  constexpr double key = 0.18;
+  const Color3& weights = rgb_to_xyz(display)[1];
+  // One logarithm of a product of many: a float is within 1e-45..1e39, so the product stays a normal number.
+  double sum = 0, product = 1;
+  size_t lit = 0;
+  for (size_t i = 0; i < picture.pixel_count(); ++i) {
+    const double Y = weights[0] * picture.r[i] + weights[1] * picture.g[i] + weights[2] * picture.b[i];
+    if (!(Y > 0)) continue;  // nor where it is not a number
+    product *= Y;
+    ++lit;
+    if (product > 1e200 || product < 1e-200) {
+      sum += portable::log(product);
+      product = 1;
+    }
+  }
+  if (lit == 0) return 0;
+  sum += portable::log(product);
+  const double mean = sum / static_cast<double>(lit);
+  const double stops = (portable::log(key) - mean) / portable::log(2);
+  return static_cast<float>(std::clamp(stops, -100.0, 100.0));
+}
+
+}  // namespace metamer
