@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -11,12 +12,16 @@
 namespace metamer {
 namespace {
 
+constexpr double farthest = 1e18;          // metres; Embree's largest coordinate is 1.8e18
+constexpr double farthest_inverse = 1e36;  // float's largest number is 3.4e38
+
 struct Builder {
   const Scene& scene;
   World& world;
   Diagnostics& diagnostics;
   std::vector<uint32_t> mesh_users;    // how many entities show a mesh
   std::vector<uint32_t> shared_first;  // first triangle of a mesh kept in its own space, or no_index
+  std::vector<double> mesh_extent;     // largest coordinate of a mesh in its own space
 };
 
 Placement make_placement(const glm::dmat4& to_world, const Geometry& geometry) {
@@ -32,6 +37,29 @@ Placement make_placement(const glm::dmat4& to_world, const Geometry& geometry) {
   placement.height = geometry.height;
   placement.normal_sign = geometry.flip_normal != 0 ? -1.0f : 1.0f;
   return placement;
+}
+
+// The largest coordinate of a shape in its own space: of a mesh's vertices, or of a box around a quadric or rectangle.
+double extent(const Geometry& geometry, const Mesh* mesh) {
+  if (mesh == nullptr)
+    return std::max({geometry.radius, std::abs(geometry.height), geometry.width / 2, geometry.depth / 2});
+  float largest = 0;
+  for (const glm::vec3& p : mesh->positions) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return double{largest};
+}
+
+// Whether all of a placed shape and its inverse's numbers are where single precision and Embree can follow.
+bool is_within_reach(const glm::dmat4& to_world, double extent) {
+  const glm::dmat4 to_object = glm::inverse(to_world);
+  for (int row = 0; row < 3; ++row) {
+    double reach = std::abs(to_world[3][row]), inverse = std::abs(to_object[3][row]);
+    for (int column = 0; column < 3; ++column) {
+      reach += std::abs(to_world[column][row]) * extent;
+      inverse += std::abs(to_object[column][row]);
+    }
+    if (!(reach <= farthest) || !(inverse <= farthest_inverse)) return false;
+  }
+  return true;
 }
 
 void push_vector(Column<float>& column, const glm::dvec3& v) {
@@ -149,7 +177,7 @@ void add_quadric_object(Builder& b, Entity entity, const Geometry& geometry, con
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
                     World& world, Diagnostics& diagnostics) {
   const Registry& registry = scene.registry;
-  Builder b{scene, world, diagnostics, {}, {}};
+  Builder b{scene, world, diagnostics, {}, {}, {}};
   b.mesh_users.resize(scene.meshes.size());
   b.shared_first.resize(scene.meshes.size(), no_index);
   world.placements.push_back(make_placement(glm::dmat4(1), Geometry{}));
@@ -163,6 +191,7 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
     else
       ++b.mesh_users[geometry.mesh];
   });
+  for (const Mesh& mesh : scene.meshes) b.mesh_extent.push_back(extent(Geometry{}, &mesh));
   if (diagnostics.has_errors()) return;
   registry.each<Geometry>([&](Entity entity, uint32_t row) {
     const Geometry geometry = table.get(row);
@@ -173,8 +202,13 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
     objects.material.push_back(materials[entity.index].row);
     objects.first_light.push_back(no_index);
     objects.visibility.push_back(registry.get<Visibility>(entity).mask);
-    objects.entity.push_back(entity.index);
     const glm::dmat4& matrix = to_world[entity.index];
+    const double size = geometry.kind == ShapeKind::mesh ? b.mesh_extent[geometry.mesh] : extent(geometry, nullptr);
+    if (!is_within_reach(matrix, size))
+      diagnostics.error(scene.location(entity),
+                        fmt::format("{} is too large, too small or too far away for single precision: shapes may reach "
+                                    "1e18 m from the origin",
+                                    scene.describe(entity)));
     if (geometry.kind == ShapeKind::mesh)
       add_mesh_object(b, entity, geometry, scene.meshes[geometry.mesh], matrix);
     else if (is_mesh)

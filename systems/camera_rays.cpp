@@ -73,17 +73,21 @@ void camera_rays_kernel(const World& world, std::span<const RayPacket> packets, 
       sample_2d(key, splat_u(wavelength_dimension), &u, &rotation);
       sample_wavelengths(wavelengths, u, rotation, lambda_nm, inv_pdf_nm);
 
-      store(ray.origin, paths.origin, i);
-      store(ray.direction, paths.direction, i);
+      // A ray that cannot be traced still takes its place in the packet; NaN has its sample refused and counted.
+      const VF zero = hn::Zero(FloatTag());
+      const MF traceable = is_traceable(ray.origin, ray.direction);
+      const VF radiance = hn::IfThenElse(traceable, zero, hn::NaN(FloatTag()));
+      store(if_then_else(traceable, ray.origin, Vec3{zero, zero, zero}), paths.origin, i);
+      store(if_then_else(traceable, ray.direction, Vec3{zero, zero, splat(1.0f)}), paths.direction, i);
       store(lambda_nm, paths.lambda_nm, i);
       const VU slot = hn::Add(lane, splat_u(static_cast<uint32_t>(i)));
       for (size_t j = 0; j < 4; ++j) {
         store(splat(1.0f), paths.throughput[j], i);
         store(lambda_nm[j], slots.lambda_nm[j], i);
         store(inv_pdf_nm[j], slots.inv_pdf_nm[j], i);
-        store(hn::Zero(FloatTag()), slots.radiance[j], i);
+        store(radiance, slots.radiance[j], i);
       }
-      store(hn::Zero(FloatTag()), paths.pdf_direction, i);
+      store(zero, paths.pdf_direction, i);
       store(splat(1.0f), paths.eta_scale, i);
       store(key.pixel_seed, paths.pixel_seed, i);
       store(key.index_reversed, paths.index, i);

@@ -78,6 +78,12 @@ HWY_INLINE void append(MF mask, const VF v[4], const Columns<float, 4>& c, size_
   for (size_t j = 0; j < 4; ++j) append(mask, v[j], c[j], at);
 }
 
+// What Embree takes: with assertions on, as Debian builds it, a coordinate beyond 1.8e18 or a NaN stops the program.
+HWY_INLINE MF is_traceable(const Vec3& origin, const Vec3& direction) {
+  const auto size = [](const Vec3& v) { return hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)); };
+  return hn::And(hn::Le(size(origin), splat(1e18f)), hn::Le(size(direction), splat(4.0f)));
+}
+
 HWY_INLINE VF max_of(const VF v[4]) { return hn::Max(hn::Max(v[0], v[1]), hn::Max(v[2], v[3])); }
 
 }  // namespace metamer::HWY_NAMESPACE

@@ -29,10 +29,11 @@ void roulette_lanes(uint32_t depth, const ShadeStream& shade, size_t i, PathStre
     const VF compensation = hn::Div(one, hn::Max(probability, splat(1e-30f)));
     for (VF& t : throughput) t = hn::Mul(t, compensation);
   }
+  const Vec3 direction = load(shade.next_direction, i), origin = ray_origin(shade, i, direction);
+  survives = hn::And(survives, is_traceable(origin, direction));
   if (hn::AllFalse(d, survives)) return;
-  const Vec3 direction = load(shade.next_direction, i);
   const size_t at = next.size;
-  append(survives, ray_origin(shade, i, direction), next.origin, at);
+  append(survives, origin, next.origin, at);
   append(survives, direction, next.direction, at);
   VF lambda_nm[4];
   load(shade.lambda_nm, i, lambda_nm);

@@ -49,12 +49,21 @@ HWY_INLINE void append_shadow_rays(const ShadeStream& shade, size_t i, const VF 
   for (size_t j = 0; j < 4; ++j)
     contribution[j] =
         hn::Mul(hn::Mul(load(shade.throughput[j], i), load(shade.light_radiance[j], i)), hn::Mul(f_cos[j], weight));
-  // Throughput is 0 in dead lanes.
-  const MF counts = hn::And(is_live(load(shade.slot, i)), hn::Gt(max_of(contribution), zero));
-  const Vec3 direction = load(shade.light_direction, i);
+  Vec3 direction = load(shade.light_direction, i);
+  const Vec3 origin = ray_origin(shade, i, direction);
+  // Aimed anew from where the ray starts: on a wide plane that is far enough off to matter to a lamp close by.
+  VF distance = load(shade.light_distance, i);
+  const Vec3 to_light = load(shade.position, i) - origin + direction * distance;
+  const VF length = hn::Sqrt(dot(to_light, to_light));
+  const MF near = hn::Lt(distance, hn::Inf(FloatTag()));
+  direction = if_then_else(near, to_light * hn::Div(one, length), direction);
+  distance = hn::IfThenElse(near, length, distance);
   // Ends short of the light by as much as float leaves uncertain about where it is.
-  const VF t_far = hn::Mul(load(shade.light_distance, i), splat(0.9999f));
-  append(counts, ray_origin(shade, i, direction), shadow.origin, shadow.size);
+  const VF t_far = hn::Mul(distance, splat(0.9999f));
+  // Throughput is 0 in dead lanes.
+  const MF lit = hn::And(is_live(load(shade.slot, i)), hn::Gt(max_of(contribution), zero));
+  const MF counts = hn::And(lit, hn::And(is_traceable(origin, direction), hn::Gt(t_far, zero)));
+  append(counts, origin, shadow.origin, shadow.size);
   append(counts, direction, shadow.direction, shadow.size);
   append(counts, t_far, shadow.t_far, shadow.size);
   append(counts, contribution, shadow.contribution, shadow.size);

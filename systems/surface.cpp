@@ -94,9 +94,11 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
 
   Surface surface;
   surface.position = mul_add(p[0], b0, mul_add(p[1], b1, p[2] * b2));
-  const Vec3 crossed = cross(e1, e2);
-  const VF area2 = dot(crossed, crossed);
-  const VF inverse_length = safe_reciprocal(hn::Sqrt(area2));
+  // Edges relative to the longest: the square of an area leaves float's range for edges of 1e-10 and of 1e10 metres.
+  const VF edge = hn::Sqrt(hn::Max(dot(e1, e1), dot(e2, e2)));
+  const VF inverse_edge = safe_reciprocal(edge);
+  const Vec3 crossed = cross(e1 * inverse_edge, e2 * inverse_edge);
+  const VF inverse_length = safe_reciprocal(hn::Sqrt(dot(crossed, crossed)));
   surface.normal = crossed * hn::Mul(inverse_length, side);
   Vec3 shading = mul_add(n[0], b0, mul_add(n[1], b1, n[2] * b2));
   if (world.has_instances) shading = if_then_else(placed, transform_normal(inverse, shading), shading);
@@ -107,8 +109,7 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
   surface.shading_normal = shading;
 
   const Vec3 terms = mul_add(abs(p[0]), b0, mul_add(abs(p[1]), b1, abs(p[2]) * b2));
-  const VF edge = hn::Sqrt(hn::Max(dot(e1, e1), dot(e2, e2)));
-  const VF sliver = hn::Min(hn::Mul(hn::Mul(edge, edge), inverse_length), splat(64.0f));
+  const VF sliver = hn::Min(inverse_length, splat(64.0f));
   surface.offset = hn::MulAdd(splat(8 * eps), dot(abs(surface.normal), terms),
                               hn::Mul(hn::Mul(splat(4 * eps), edge), hn::Add(one, sliver)));
   // Far from the origin Embree's difference of two coordinates rounds by their size.

@@ -19,7 +19,6 @@ struct ObjectColumns {
   Column<uint32_t> first_light;  // light row of the first triangle, or no_index
   Column<uint32_t> placement;    // row in World::placements; 0 is the identity: vertices are in world space
   Column<uint32_t> visibility;   // mask of rays that see it
-  Column<uint32_t> entity;       // index of the entity it came from
   size_t size() const { return kind.size(); }
 };
 

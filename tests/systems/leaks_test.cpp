@@ -125,5 +125,20 @@ TEST(Leaks, APlaneIsLitEvenlyAtEveryScaleAndPlace) {
       }
 }
 
+// The wider a plane's triangles, the farther off new rays start: a lamp close to it must not shadow itself for that.
+// A disk of radius r at height h over a diffuse plane gives it an irradiance of pi L r^2 / (r^2 + h^2).
+TEST(Leaks, ALampCloseToAWidePlaneIsSeen) {
+  for (const float width : {1.0f, 100.0f, 1000.0f}) {
+    SCOPED_TRACE(width);
+    SceneBuilder b(16, 16, 64, 1);
+    b.add(rectangle(width, width), b.diffuse(0.8));
+    const Entity lamp = b.add(disk(0.25f), b.diffuse(0.0), moved(0, 0, 0.5) * turned(180, 1, 0, 0));
+    b.emit(lamp, unit_spectrum, 1);
+    b.look_at({0.1, 0.9, 0.2}, {0, 0, 0}, perspective(0.1f));
+    const auto wanted = [](double) { return 0.8 * 0.0625 / (0.0625 + 0.25); };
+    expect_mean(trace_radiances(*b.freeze()), wanted, 0.02);
+  }
+}
+
 }  // namespace
 }  // namespace metamer
