@@ -15,18 +15,22 @@
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
+
+#include "engine/schedule/workers.h"
 
 namespace metamer {
 namespace {
 
 constexpr const char* film_part = "film";
 constexpr int film_layout_version = 1;
-constexpr int rows_per_block = 16;  // what one ZIP block of the format holds
-constexpr uint32_t limb_count = 4;  // 32-bit limbs of a sum, the least significant first
+constexpr int rows_per_block = 16;                 // what one ZIP block of the format holds
+constexpr int rows_per_read = 8 * rows_per_block;  // blocks that OpenEXR's threads unpack at one time
+constexpr uint32_t limb_count = 4;                 // 32-bit limbs of a sum, the least significant first
 constexpr uint32_t words_per_pixel = replicate_count * (3 * limb_count + 1);
 const std::string settings_prefix = "metamer:";
 
@@ -193,9 +197,10 @@ int find_film_part(const Imf::MultiPartInputFile& file) {
 }
 
 FileError read_film_pixels(const std::string& path, Imf::InputPart part, Film& film) {
-  std::vector<uint32_t> words(size_t{film.width()} * rows_per_block * words_per_pixel);
-  for (uint32_t row = 0; row < film.height(); row += rows_per_block) {
-    const uint32_t rows = std::min<uint32_t>(rows_per_block, film.height() - row);
+  std::vector<uint32_t> words(size_t{film.width()} * std::min<uint32_t>(rows_per_read, film.height()) *
+                              words_per_pixel);
+  for (uint32_t row = 0; row < film.height(); row += rows_per_read) {
+    const uint32_t rows = std::min<uint32_t>(rows_per_read, film.height() - row);
     part.setFrameBuffer(block_buffer(words, film.width(), static_cast<int>(row)));
     part.readPixels(static_cast<int>(row), static_cast<int>(row + rows - 1));
     const size_t first = size_t{row} * film.width();
@@ -208,7 +213,9 @@ FileError read_film_pixels(const std::string& path, Imf::InputPart part, Film& f
 }
 
 FileError read_checkpoint(const std::string& path, Film& film, FrameHeader& header) {
-  Imf::MultiPartInputFile file(path.c_str());
+  const int threads = static_cast<int>(available_threads());
+  if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
+  Imf::MultiPartInputFile file(path.c_str(), threads);
   const int number = find_film_part(file);
   if (number < 0)
     return fmt::format(

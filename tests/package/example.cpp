@@ -3,7 +3,6 @@
 #include <cstdio>
 
 #include "engine/film/film.h"
-#include "engine/spectrum/color.h"
 #include "systems/freeze.h"
 #include "systems/render.h"
 #include "systems/write_frame.h"
