@@ -11,7 +11,6 @@ std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   const Filter& filter = scene.settings.filter;
   world->filter = make_pixel_filter(filter.kind, filter.radius_x, filter.radius_y, filter.sigma);
   const std::vector<glm::dmat4> to_world = build_transforms(scene, diagnostics);
-  if (diagnostics.has_errors()) return nullptr;
   const std::vector<MaterialRow> materials = build_materials(scene, *world);
   build_geometry(scene, to_world, materials, *world, diagnostics);
   build_lights(scene, to_world, *world, diagnostics);
