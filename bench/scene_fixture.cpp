@@ -60,6 +60,7 @@ std::unique_ptr<Batch> batch_at_depth(const World& world, uint32_t depth) {
   for (uint32_t d = 0; d < depth; ++d) {
     batch->shadow.size = 0;
     shade_diffuse(world, d, batch->shade, batch->shadow);
+    shade_rough(world, d, batch->shade, batch->shadow);
     shade_rough_conductor(world, d, batch->shade, batch->shadow);
     shade_smooth_conductor(world, batch->shade);
     shade_dielectric(world, d, batch->shade);

@@ -17,8 +17,8 @@ inline constexpr uint32_t batch_capacity = 2048;  // paths; a multiple of 16
 inline constexpr uint32_t dead_lane = 0xffffffffu;
 
 // What a hit's lanes are sorted by: each kind has its own kernel over all its lanes. The last two end a path.
-enum class ShadeKind : uint32_t { diffuse, rough_conductor, smooth_conductor, dielectric, absorber, miss };
-inline constexpr uint32_t shade_kind_count = 6;
+enum class ShadeKind : uint32_t { diffuse, rough, rough_conductor, smooth_conductor, dielectric, absorber, miss };
+inline constexpr uint32_t shade_kind_count = 7;
 
 // Lanes [begin, end) of a sorted stream; begin is a multiple of 16, lanes up to the next multiple are dead.
 struct Group {

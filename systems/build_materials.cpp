@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include "engine/simd/portable_math.h"
 #include "systems/bsdf/limits.h"
 #include "systems/freeze.h"
 
@@ -8,6 +11,59 @@ MaterialRow add_diffuse(const Material& material, World& world) {
   if (world.spectra.max_value(material.reflectance) == 0) return {ShadeKind::absorber, 0};
   world.diffuse.reflectance.push_back(material.reflectance);
   return {ShadeKind::diffuse, static_cast<uint32_t>(world.diffuse.reflectance.size() - 1)};
+}
+
+// What it reflects of light from everywhere, seen along the normal: the integral of f_cos over the hemisphere.
+double rough_albedo(const Material& material, double kd, double ks) {
+  if (material.normalized != 0) return kd + ks;
+  constexpr double pi = 3.14159265358979323846;
+  const double s = double{material.shininess} + 2;
+  return pi * kd + 8 * pi * ks * (1 - portable::pow(2, -s / 2)) / s;
+}
+
+struct RoughPeak {
+  double albedo = 0;
+  int lambda_nm = 0;
+};
+RoughPeak rough_peak(const Material& material, const SpectrumSet& spectra) {
+  RoughPeak peak;
+  for (int lambda_nm = lambda_min_nm; lambda_nm <= lambda_max_nm; ++lambda_nm) {
+    const double albedo =
+        rough_albedo(material, spectra.value(material.kd, lambda_nm), spectra.value(material.ks, lambda_nm));
+    if (albedo > peak.albedo) peak = {albedo, lambda_nm};
+  }
+  return peak;
+}
+
+void check_rough(const Scene& scene, Entity entity, const Material& material, Diagnostics& diagnostics) {
+  const auto error = [&](const std::string& what) {
+    diagnostics.error(scene.location(entity), fmt::format("{}: {}", scene.describe(entity), what));
+  };
+  if (!(material.shininess >= 0 && material.shininess <= largest_shininess))
+    return error("'shininess' is not a number from 0 to 1e6");
+  if (scene.spectra.has_negative(material.kd) || scene.spectra.has_negative(material.ks))
+    return error("'kd' or 'ks' is negative at some wavelength");
+  const RoughPeak peak = rough_peak(material, scene.spectra);
+  if (!(peak.albedo > 1 + 1e-6)) return;  // single precision may round a sum of 1 up
+  if (material.normalized != 0)
+    return error(
+        fmt::format("'kd' + 'ks' reaches {:.4g} at {} nm; normalised they are albedos, and their sum at most 1",
+                    peak.albedo, peak.lambda_nm));
+  diagnostics.warning(scene.location(entity),
+                      fmt::format("{} creates energy: seen along the normal it reflects {:.4g} times the light of its "
+                                  "surroundings at {} nm; smaller 'kd' and 'ks', or 'normalized', would not",
+                                  scene.describe(entity), peak.albedo, peak.lambda_nm));
+}
+
+MaterialRow add_rough(const Material& material, World& world) {
+  RoughColumns& table = world.rough;
+  if (world.spectra.max_value(material.kd) == 0 && world.spectra.max_value(material.ks) == 0)
+    return {ShadeKind::absorber, 0};
+  table.kd.push_back(material.kd);
+  table.ks.push_back(material.ks);
+  table.shininess.push_back(material.shininess);
+  table.normalized.push_back(material.normalized);
+  return {ShadeKind::rough, static_cast<uint32_t>(table.kd.size() - 1)};
 }
 
 MaterialRow add_conductor(const Material& material, World& world) {
@@ -36,6 +92,7 @@ MaterialRow add_material(const Material& material, World& world) {
   switch (material.kind) {
     case MaterialKind::diffuse: return add_diffuse(material, world);
     case MaterialKind::conductor: return add_conductor(material, world);
+    case MaterialKind::rough: return add_rough(material, world);
     case MaterialKind::dielectric: break;
   }
   return add_dielectric(material, world);
@@ -43,13 +100,15 @@ MaterialRow add_material(const Material& material, World& world) {
 
 }  // namespace
 
-std::vector<MaterialRow> build_materials(const Scene& scene, World& world) {
+std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagnostics& diagnostics) {
   const Registry& registry = scene.registry;
   // Rows are made once per Material component, then every surface points to its row.
   std::vector<MaterialRow> own, by_surface;
   registry.each<Material>([&](Entity entity, uint32_t) {
     if (entity.index >= own.size()) own.resize(entity.index + 1);
-    own[entity.index] = add_material(registry.get<Material>(entity), world);
+    const Material material = registry.get<Material>(entity);
+    if (material.kind == MaterialKind::rough) check_rough(scene, entity, material, diagnostics);
+    own[entity.index] = add_material(material, world);
   });
   Material grey;
   grey.reflectance = world.spectra.add_constant(0.5).id;

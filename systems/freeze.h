@@ -20,7 +20,9 @@ struct MaterialRow {
   ShadeKind kind = ShadeKind::diffuse;
   uint32_t row = 0;
 };
-std::vector<MaterialRow> build_materials(const Scene& scene, World& world);
+// Errors: a rough material's shininess out of range, negative spectra, or albedos of its normalised form that sum to
+// more than 1; a warning where its taught form creates energy at normal view.
+std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagnostics& diagnostics);
 
 // Objects, vertices, quadrics, and the light rows of emitting shapes.
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,

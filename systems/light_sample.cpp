@@ -181,7 +181,7 @@ void light_sample_lanes(const World& world, uint32_t depth, ShadeStream& shade, 
 }
 
 void light_sample_kernel(const World& world, uint32_t depth, ShadeStream& shade) {
-  for (const ShadeKind kind : {ShadeKind::diffuse, ShadeKind::rough_conductor}) {
+  for (const ShadeKind kind : {ShadeKind::diffuse, ShadeKind::rough, ShadeKind::rough_conductor}) {
     const Group& group = shade.groups[static_cast<size_t>(kind)];
     for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) light_sample_lanes(world, depth, shade, i);
   }

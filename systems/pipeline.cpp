@@ -56,6 +56,7 @@ void trace_vertices(const World& world, uint32_t depth, bool last, Batch& batch,
   clock.charge(SystemId::light_sample);
   batch.shadow.size = 0;
   shade_diffuse(world, depth, shade, batch.shadow);
+  shade_rough(world, depth, shade, batch.shadow);
   shade_rough_conductor(world, depth, shade, batch.shadow);
   shade_smooth_conductor(world, shade);
   shade_dielectric(world, depth, shade);

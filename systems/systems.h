@@ -64,6 +64,7 @@ void light_sample(const World& world, uint32_t depth, ShadeStream& shade);
 
 // BSDF kernels by kind: weigh the light sample (appended to `shadow` unless 0) and draw the next direction.
 void shade_diffuse(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow);
+void shade_rough(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough_conductor(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow);
 void shade_smooth_conductor(const World& world, ShadeStream& shade);
 void shade_dielectric(const World& world, uint32_t depth, ShadeStream& shade);

@@ -42,20 +42,25 @@ struct Geometry {
                       &Geometry::width, &Geometry::depth, &Geometry::flip_normal);
 };
 
-enum class MaterialKind : uint32_t { diffuse, conductor, dielectric };
+enum class MaterialKind : uint32_t { diffuse, conductor, dielectric, rough };
 enum class FresnelModel : uint32_t { exact, schlick };
 
 // diffuse: `reflectance`. conductor: `eta`, `kappa`, GGX roughness. dielectric: `eta` inside against the
 // outside, smooth. `alpha_x`, `alpha_y` are GGX slopes' widths (not remapped); below 1e-3 a mirror.
+// rough: diffuse `kd` plus Phong-Blinn `ks`, `shininess` (see systems/bsdf/rough-inl.h); as taught, both in sr^-1 and
+// without a bound, or `normalized`, both albedos with a sum of at most 1.
 struct Material {
   MaterialKind kind = MaterialKind::diffuse;
   SpectrumId reflectance = 0;
   SpectrumId eta = 0, kappa = 0;
   float alpha_x = 0, alpha_y = 0;
   FresnelModel fresnel = FresnelModel::exact;
-  static constexpr auto fields =
-      std::make_tuple(&Material::kind, &Material::reflectance, &Material::eta, &Material::kappa, &Material::alpha_x,
-                      &Material::alpha_y, &Material::fresnel);
+  SpectrumId kd = 0, ks = 0;
+  float shininess = 0;
+  uint32_t normalized = 0;  // 1: the reciprocal form that conserves energy
+  static constexpr auto fields = std::make_tuple(
+      &Material::kind, &Material::reflectance, &Material::eta, &Material::kappa, &Material::alpha_x, &Material::alpha_y,
+      &Material::fresnel, &Material::kd, &Material::ks, &Material::shininess, &Material::normalized);
 };
 
 // The entity whose Material covers this entity's surface. Without a slot (and without a Material of its own) a

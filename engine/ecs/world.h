@@ -35,6 +35,11 @@ static_assert(sizeof(Placement) == 32 * sizeof(float));
 struct DiffuseColumns {
   Column<uint32_t> reflectance;  // SpectrumId
 };
+struct RoughColumns {
+  Column<uint32_t> kd, ks;  // SpectrumId
+  Column<float> shininess;
+  Column<uint32_t> normalized;  // 1: the reciprocal form
+};
 struct ConductorColumns {
   Column<uint32_t> eta, kappa;  // SpectrumId
   Column<float> alpha_x, alpha_y;
@@ -71,8 +76,8 @@ struct Environment {
   uint32_t light = no_index;  // its row of lights; no_index: black
   uint32_t width = 0, height = 0;
   ImageMapping mapping = ImageMapping::latitude_longitude;
-  Column<float> texels;    // four per texel: sigmoid coefficients c0 c1 c2 and scale
-  Distribution2D density;  // over the image's square, proportional to the texels' luminance times the measure
+  Column<float> texels;       // four per texel: sigmoid coefficients c0 c1 c2 and scale
+  Distribution2D density;     // over the image's square, proportional to the texels' luminance times the measure
   double mean_luminance = 1;  // of the image over the sphere
   float to_world[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // rotation, row-major; to_local is its inverse
   float to_local[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -99,6 +104,7 @@ struct World {
   Column<uint32_t> triangle_vertices;  // three per triangle
   Column<Placement> placements;
   DiffuseColumns diffuse;
+  RoughColumns rough;
   ConductorColumns conductor;
   DielectricColumns dielectric;
   Column<LightRow> lights;

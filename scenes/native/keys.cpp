@@ -15,6 +15,7 @@ constexpr KeySpec filter_gaussian[] = {{"type", required}, {"radius"}, {"sigma"}
 constexpr KeySpec spectrum[] = {{"constant"}, {"table"}, {"named"}, {"blackbody"},
                                 {"daylight"}, {"rgb"},   {"space"}, {"scale"}};
 constexpr KeySpec material_diffuse[] = {{"type", required}, {"reflectance", required}};
+constexpr KeySpec material_rough[] = {{"type", required}, {"kd"}, {"ks"}, {"shininess"}, {"normalized"}};
 constexpr KeySpec material_conductor[] = {{"type", required}, {"metal"},     {"eta"},
                                           {"kappa"},          {"roughness"}, {"fresnel"}};
 constexpr KeySpec material_dielectric[] = {{"type", required}, {"glass"}, {"eta"}, {"fresnel"}};
@@ -47,6 +48,7 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"filter.gaussian", filter_gaussian},
                                 {"spectrum", spectrum},
                                 {"material.diffuse", material_diffuse},
+                                {"material.rough", material_rough},
                                 {"material.conductor", material_conductor},
                                 {"material.dielectric", material_dielectric},
                                 {"mesh", mesh},

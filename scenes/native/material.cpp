@@ -2,6 +2,7 @@
 
 #include "scenes/native/components.h"
 #include "scenes/native/spectra.h"
+#include "systems/bsdf/limits.h"
 
 namespace metamer {
 namespace {
@@ -20,6 +21,18 @@ void read_roughness(const SceneContext& context, const JsonObject& object, Mater
   }
   material.alpha_x = static_cast<float>(alpha[0]);
   material.alpha_y = static_cast<float>(alpha[1]);
+}
+
+// Both terms may be left out; the glossy one needs its exponent.
+void read_rough(SceneContext& context, const JsonObject& object, Material& material) {
+  constexpr Range exponent{0, double{largest_shininess}};
+  material.normalized = object.boolean("normalized", false);
+  const Quantity quantity = material.normalized != 0 ? Quantity::reflectance : Quantity::brdf;
+  if (object.has("kd")) material.kd = read_spectrum(context, *object.find("kd"), "kd", quantity);
+  if (object.has("ks")) material.ks = read_spectrum(context, *object.find("ks"), "ks", quantity);
+  material.shininess = static_cast<float>(object.number("shininess", exponent, 0));
+  if (object.has("ks") && !object.has("shininess"))
+    context.reader.error(object.value(), "a rough material with 'ks' lacks the required key 'shininess'");
 }
 
 void read_conductor(SceneContext& context, const JsonObject& object, Material& material) {
@@ -57,6 +70,11 @@ std::optional<Material> read_material(SceneContext& context, const Json::Value& 
     material.kind = MaterialKind::diffuse;
     if (object.has("reflectance"))
       material.reflectance = read_spectrum(context, *object.find("reflectance"), "reflectance", Quantity::reflectance);
+    return material;
+  }
+  if (object.type() == "rough") {
+    material.kind = MaterialKind::rough;
+    read_rough(context, object, material);
     return material;
   }
   material.fresnel = static_cast<FresnelModel>(object.choice("fresnel", fresnel_names, 0));

@@ -13,6 +13,7 @@ namespace metamer {
 enum class Quantity : uint8_t {
   any,          // not used by anything: only its form is checked
   reflectance,  // 0 to 1; keeps its end values
+  brdf,         // at least 0; keeps its end values
   eta,          // above 0; keeps its end values
   kappa,        // at least 0; keeps its end values
   light,        // at least 0; zero outside

@@ -17,6 +17,7 @@ const Range& range_of(Quantity quantity) {
   switch (quantity) {
     case Quantity::reflectance: return unit_interval;
     case Quantity::eta: return positive;
+    case Quantity::brdf:
     case Quantity::kappa:
     case Quantity::light: return not_negative;
     case Quantity::any: break;

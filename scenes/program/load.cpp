@@ -77,6 +77,7 @@ size_t world_bytes(const World& world) {
   return bytes_of(o.kind, o.first_triangle, o.triangle_count, o.shade_kind, o.material, o.first_light, o.placement,
                   o.visibility) +
          bytes_of(world.positions, world.normals, world.uvs, world.triangle_vertices, world.placements) +
+         bytes_of(world.rough.kd, world.rough.ks, world.rough.shininess, world.rough.normalized) +
          bytes_of(world.diffuse.reflectance, world.conductor.eta, world.conductor.kappa, world.conductor.alpha_x,
                   world.conductor.alpha_y, world.conductor.schlick, world.dielectric.eta, world.dielectric.schlick,
                   world.dielectric.dispersive) +

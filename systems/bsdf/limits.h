@@ -13,4 +13,7 @@ inline constexpr float smooth_alpha = 1e-3f;
 // A rough distribution's smaller alpha is raised to this, as pbrt-v4 does: (0, 0.1) stays finite.
 inline constexpr float least_alpha = 1e-4f;
 
+// Beyond this shininess the half vector's rounding would show in a rough material's lobe; it is 0.1 degrees wide.
+inline constexpr float largest_shininess = 1e6f;
+
 }  // namespace metamer

@@ -28,6 +28,12 @@ Spectrum4 reflectance(const ConductorOptics& optics, double cos_theta) {
   }
   return f;
 }
+double glossy_share(const RoughOptics& optics) {
+  const double weight = optics.normalized ? 1 : 8 / (optics.shininess + 2);
+  double kd = 0, glossy = 0;
+  for (size_t j = 0; j < 4; ++j) kd += optics.kd[j], glossy += weight * optics.ks[j];
+  return glossy > 0 ? glossy / (kd + glossy) : 0;
+}
 }  // namespace
 
 double dot(const Direction& a, const Direction& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -103,6 +109,43 @@ BsdfSample sample_diffuse(const Direction& wo, const Spectrum4& albedo, double u
   sample.wi = {up.x, up.y, up.z * side_of(wo)};
   sample.pdf = warps::cosine_hemisphere_pdf(up.z);
   if (sample.pdf > 0) sample.weight = albedo;
+  return sample;
+}
+
+BsdfValue eval_rough(const Direction& wo, const RoughOptics& optics, const Direction& wi) {
+  BsdfValue value;
+  if (wo.z * wi.z <= 0) return value;
+  const double s = optics.shininess, share = glossy_share(optics);
+  const double cos_i = std::abs(wi.z), cos_o = std::abs(wo.z);
+  const Direction h = normalize({wo.x + wi.x, wo.y + wi.y, wo.z + wi.z});
+  const double cos_delta = std::abs(h.z), cos_d = dot(wo, h);
+  for (size_t j = 0; j < 4; ++j) {
+    const double f = optics.kd[j] / pi +
+                     optics.ks[j] * (s + 1) / (8 * pi) * std::pow(cos_delta, s) / (cos_d * std::max(cos_i, cos_o));
+    value.f_cos[j] = optics.normalized ? f * cos_i : optics.kd[j] * cos_i + optics.ks[j] * std::pow(cos_delta, s);
+  }
+  const double pdf_half_vector = (s + 1) / (2 * pi) * std::pow(cos_delta, s);
+  value.pdf = share * pdf_half_vector / (4 * cos_d) + (1 - share) * cos_i / pi;
+  return value;
+}
+
+BsdfSample sample_rough(const Direction& wo, const RoughOptics& optics, double choice, double u, double v) {
+  BsdfSample sample;
+  const double side = side_of(wo);
+  const Direction o = upper(wo, side);
+  if (choice < glossy_share(optics)) {
+    const double cos_delta = std::pow(1 - u, 1 / (optics.shininess + 1));
+    const double sin_delta = std::sqrt(std::max(0.0, 1 - square(cos_delta)));
+    const Direction h = {sin_delta * std::cos(2 * pi * v), sin_delta * std::sin(2 * pi * v), cos_delta};
+    sample.wi = upper(reflect({-o.x, -o.y, -o.z}, h), side);
+  } else {
+    const PointD3 p = warps::cosine_hemisphere(u, v);
+    sample.wi = upper({p.x, p.y, p.z}, side);
+  }
+  const BsdfValue value = eval_rough(wo, optics, sample.wi);
+  if (!(value.pdf > 0)) return sample;
+  sample.pdf = value.pdf;
+  for (size_t j = 0; j < 4; ++j) sample.weight[j] = value.f_cos[j] / value.pdf;
   return sample;
 }
 

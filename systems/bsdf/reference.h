@@ -51,6 +51,15 @@ struct BsdfSample {
 BsdfValue eval_diffuse(const Direction& wo, const Spectrum4& albedo, const Direction& wi);
 BsdfSample sample_diffuse(const Direction& wo, const Spectrum4& albedo, double u, double v);
 
+// Both forms of the rough reflector: see rough-inl.h. `choice` takes the lobe.
+struct RoughOptics {
+  Spectrum4 kd{}, ks{};
+  double shininess = 0;
+  bool normalized = false;
+};
+BsdfValue eval_rough(const Direction& wo, const RoughOptics& optics, const Direction& wi);
+BsdfSample sample_rough(const Direction& wo, const RoughOptics& optics, double choice, double u, double v);
+
 struct Roughness {
   double alpha_x = 0, alpha_y = 0;
 };

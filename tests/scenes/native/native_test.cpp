@@ -73,7 +73,7 @@ TEST(Native, ReadsEveryKey) {
   EXPECT_EQ(s.sensor_scale, 2);
   EXPECT_EQ(r.scene.meshes.size(), 2u);
   EXPECT_EQ(r.scene.registry.table<Light>().size(), 8u);
-  EXPECT_EQ(r.scene.registry.table<Material>().size(), 6u);
+  EXPECT_EQ(r.scene.registry.table<Material>().size(), 7u);
 
   const auto camera = r.get<Camera>("eye");
   EXPECT_EQ(camera.fov_deg, 40);
@@ -91,10 +91,16 @@ TEST(Native, ReadsEveryKey) {
   EXPECT_EQ(r.get<Material>("brushed").fresnel, FresnelModel::schlick);
   EXPECT_EQ(r.get<Material>("brushed").alpha_x, 0.3f);
   EXPECT_EQ(r.get<Material>("brushed").alpha_y, 0.1f);
+  const auto plastic = r.get<Material>("plastic");
+  EXPECT_EQ(plastic.kind, MaterialKind::rough);
+  EXPECT_NEAR(r.scene.spectra.value(plastic.kd, 550), 0.1, 1e-7);
+  EXPECT_NEAR(r.scene.spectra.value(plastic.ks, 550), 0.5, 1e-7);
+  EXPECT_EQ(plastic.shininess, 40);
+  EXPECT_EQ(plastic.normalized, 0u);
   EXPECT_EQ(r.get<Material>("made").alpha_y, 0.2f);
   EXPECT_NEAR(r.scene.spectra.value(r.get<Material>("ice").eta, 550), 1.31, 1e-6);
   EXPECT_NEAR(r.scene.spectra.value(r.get<Material>("ball").reflectance, 500), 0.35, 1e-6);
-  EXPECT_EQ(r.scene.location(r.find("ball")).line, 138u);
+  EXPECT_EQ(r.scene.location(r.find("ball")).line, 145u);
 }
 
 TEST(Native, AppliesOperationsFirstToLastAndUnits) {

@@ -11,6 +11,7 @@
 #include "systems/bsdf/dielectric-inl.h"
 #include "systems/bsdf/diffuse-inl.h"
 #include "systems/bsdf/ggx-inl.h"
+#include "systems/bsdf/rough-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
@@ -23,6 +24,8 @@ struct Arguments {
   VF u, v, alpha_x, alpha_y;
   VF albedo[4], eta[4], kappa[4];
   MF schlick, dispersive;
+  RoughOptics rough;
+  VF choice;
 };
 struct Results {
   Vec3 wi;
@@ -58,6 +61,11 @@ std::vector<BsdfResult> run(const std::vector<BsdfCase>& cases, Kernel kernel) {
     for (VF& x : a.kappa) x = next();
     a.schlick = hn::Eq(next(), splat(1.0f));
     a.dispersive = hn::Eq(next(), splat(1.0f));
+    for (int j = 0; j < 4; ++j) a.rough.kd[j] = a.albedo[j];
+    for (VF& x : a.rough.ks) x = next();
+    a.rough.shininess = next();
+    a.rough.normalized = hn::Eq(next(), splat(1.0f));
+    a.choice = next();
     const Results r = kernel(a);
     size_t o = 0;
     for (const VF& x : {r.wi.x, r.wi.y, r.wi.z, r.value[0], r.value[1], r.value[2], r.value[3], r.pdf, r.delta,
@@ -97,6 +105,18 @@ std::vector<BsdfResult> EvalDiffuse(const std::vector<BsdfCase>& cases) {
 }
 std::vector<BsdfResult> SampleDiffuse(const std::vector<BsdfCase>& cases) {
   return run(cases, [](const Arguments& a) { return of_sample(sample_diffuse(a.wo, a.albedo, a.u, a.v)); });
+}
+std::vector<BsdfResult> EvalRough(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) {
+    Results r = nothing();
+    eval_rough(make_rough_lobe(a.wo, a.rough), a.rough, a.wi, r.value, r.pdf);
+    return r;
+  });
+}
+std::vector<BsdfResult> SampleRough(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) {
+    return of_sample(sample_rough(make_rough_lobe(a.wo, a.rough), a.rough, a.choice, a.u, a.v));
+  });
 }
 std::vector<BsdfResult> EvalConductor(const std::vector<BsdfCase>& cases) {
   return run(cases, [](const Arguments& a) {
@@ -139,6 +159,8 @@ HWY_AFTER_NAMESPACE();
 namespace metamer {
 HWY_EXPORT(EvalDiffuse);
 HWY_EXPORT(SampleDiffuse);
+HWY_EXPORT(EvalRough);
+HWY_EXPORT(SampleRough);
 HWY_EXPORT(EvalConductor);
 HWY_EXPORT(SampleConductor);
 HWY_EXPORT(SampleDielectric);
@@ -149,6 +171,12 @@ std::vector<BsdfResult> run_eval_diffuse(const std::vector<BsdfCase>& cases) {
 }
 std::vector<BsdfResult> run_sample_diffuse(const std::vector<BsdfCase>& cases) {
   return HWY_DYNAMIC_DISPATCH(SampleDiffuse)(cases);
+}
+std::vector<BsdfResult> run_eval_rough(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(EvalRough)(cases);
+}
+std::vector<BsdfResult> run_sample_rough(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(SampleRough)(cases);
 }
 std::vector<BsdfResult> run_eval_conductor(const std::vector<BsdfCase>& cases) {
   return HWY_DYNAMIC_DISPATCH(EvalConductor)(cases);

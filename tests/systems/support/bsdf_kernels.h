@@ -15,7 +15,8 @@ struct BsdfCase {
   float alpha_x = 0, alpha_y = 0;
   float albedo[4] = {1, 1, 1, 1};
   float eta[4] = {1, 1, 1, 1}, kappa[4] = {0, 0, 0, 0};
-  float schlick = 0, dispersive = 0;  // 1 where set
+  float schlick = 0, dispersive = 0;                                      // 1 where set
+  float ks[4] = {0, 0, 0, 0}, shininess = 0, normalized = 0, choice = 0;  // with albedo as kd
 };
 struct BsdfResult {
   float wi[3] = {0, 0, 0};
@@ -27,6 +28,8 @@ using BsdfKernel = std::vector<BsdfResult> (*)(const std::vector<BsdfCase>&);
 
 std::vector<BsdfResult> run_eval_diffuse(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_sample_diffuse(const std::vector<BsdfCase>& cases);
+std::vector<BsdfResult> run_eval_rough(const std::vector<BsdfCase>& cases);
+std::vector<BsdfResult> run_sample_rough(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_eval_conductor(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_sample_conductor(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_sample_dielectric(const std::vector<BsdfCase>& cases);

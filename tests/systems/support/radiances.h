@@ -29,6 +29,7 @@ inline void trace_paths(const World& world, Batch& batch) {
     if (!world.lights.empty()) light_sample(world, depth, batch.shade);
     batch.shadow.size = 0;
     shade_diffuse(world, depth, batch.shade, batch.shadow);
+    shade_rough(world, depth, batch.shade, batch.shadow);
     shade_rough_conductor(world, depth, batch.shade, batch.shadow);
     shade_smooth_conductor(world, batch.shade);
     shade_dielectric(world, depth, batch.shade);
