@@ -46,13 +46,24 @@ void check_rough(const Scene& scene, Entity entity, const Material& material, Di
   const RoughPeak peak = rough_peak(material, scene.spectra);
   if (!(peak.albedo > 1 + 1e-6)) return;  // single precision may round a sum of 1 up
   if (material.normalized != 0)
-    return error(
-        fmt::format("'kd' + 'ks' reaches {:.4g} at {} nm; normalised they are albedos, and their sum at most 1",
-                    peak.albedo, peak.lambda_nm));
+    return diagnostics.warning(
+        scene.location(entity),
+        fmt::format("{}: 'kd' + 'ks' reaches {:.4g} at {} nm; normalised they are albedos: where their sum is above 1, "
+                    "'ks' counts as 1 - 'kd'",
+                    scene.describe(entity), peak.albedo, peak.lambda_nm));
   diagnostics.warning(scene.location(entity),
                       fmt::format("{} creates energy: seen along the normal it reflects {:.4g} times the light of its "
                                   "surroundings at {} nm; smaller 'kd' and 'ks', or 'normalized', would not",
                                   scene.describe(entity), peak.albedo, peak.lambda_nm));
+}
+
+// The glossy albedo that the diffuse one leaves: energy is conserved on every wavelength whatever was asked for.
+SpectrumId limited_glossy(const Material& material, SpectrumSet& spectra) {
+  if (!(rough_peak(material, spectra).albedo > 1)) return material.ks;
+  Samples ks = spectra.samples(material.ks);
+  const Samples kd = spectra.samples(material.kd);
+  for (size_t i = 0; i < ks.size(); ++i) ks[i] = std::min(ks[i], std::max(0.0, 1 - kd[i]));
+  return spectra.add_samples(ks).id;
 }
 
 MaterialRow add_rough(const Material& material, World& world) {
@@ -60,7 +71,7 @@ MaterialRow add_rough(const Material& material, World& world) {
   if (world.spectra.max_value(material.kd) == 0 && world.spectra.max_value(material.ks) == 0)
     return {ShadeKind::absorber, 0};
   table.kd.push_back(material.kd);
-  table.ks.push_back(material.ks);
+  table.ks.push_back(material.normalized != 0 ? limited_glossy(material, world.spectra) : material.ks);
   table.shininess.push_back(material.shininess);
   table.normalized.push_back(material.normalized);
   return {ShadeKind::rough, static_cast<uint32_t>(table.kd.size() - 1)};

@@ -48,7 +48,7 @@ enum class FresnelModel : uint32_t { exact, schlick };
 // diffuse: `reflectance`. conductor: `eta`, `kappa`, GGX roughness. dielectric: `eta` inside against the
 // outside, smooth. `alpha_x`, `alpha_y` are GGX slopes' widths (not remapped); below 1e-3 a mirror.
 // rough: diffuse `kd` plus Phong-Blinn `ks`, `shininess` (see systems/bsdf/rough-inl.h); as taught, both in sr^-1 and
-// without a bound, or `normalized`, both albedos with a sum of at most 1.
+// without a bound, or `normalized`, both albedos.
 struct Material {
   MaterialKind kind = MaterialKind::diffuse;
   SpectrumId reflectance = 0;
