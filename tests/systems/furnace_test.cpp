@@ -118,5 +118,58 @@ TEST(Furnace, LosslessRoughMetalShowsItsAlbedo) {
   }
 }
 
+// A rough surface in light of 1 from everywhere shows the integral of its scalar f cos, on each wavelength: the diffuse
+// part rises with the wavelength here.
+TEST(Furnace, RoughMatterShowsItsAlbedo) {
+  struct Case {
+    double ks, degrees;
+    float shininess;
+    bool normalized;
+  };
+  for (const auto& [ks, degrees, shininess, normalized] : {Case{0.2, 30, 10, false},
+                                                           {0.2, 75, 2, false},
+                                                           {0.4, 0, 100, false},
+                                                           {0.6, 30, 10, true},
+                                                           {0.6, 80, 40, true}}) {
+    const double theta = glm::radians(degrees);
+    const reference::Direction wo = {std::sin(theta), 0, std::cos(theta)};
+    const auto kd = [](double nm) { return 0.1 + 0.2 * (nm - 360) / 470; };
+    const auto glossy = [&, &k = ks, &s = shininess, &n = normalized](double angle, double phi) {
+      const reference::Direction wi = {std::sin(angle) * std::cos(phi), std::sin(angle) * std::sin(phi),
+                                       std::cos(angle)};
+      return reference::eval_rough(wo, {{}, {k, k, k, k}, s, n}, wi).f_cos[0] * std::sin(angle);
+    };
+    const double glossy_albedo =
+        integrate_rectangle(glossy, 0, glm::radians(90.0), -glm::radians(180.0), glm::radians(180.0), 64);
+    const double diffuse = normalized ? 1 : glm::radians(180.0);
+    SceneBuilder b(16, 16, 1024, 2);
+    b.light(LightKind::environment, unit_spectrum, 1);
+    b.look_at({std::sin(theta), 0, std::cos(theta)}, {0, 0, 0}, orthographic(1e-3f), {0, 1, 0});
+    const std::vector<double> lambda_nm = {360, 830}, values = {0.1, 0.3};
+    const SpectrumId slope = b.scene.spectra.add_table(lambda_nm, values, Extend::constant).id;
+    b.add(rectangle(1, 1), b.rough(slope, b.constant(ks), shininess, normalized));
+    SCOPED_TRACE(testing::Message() << ks << " " << shininess << " at " << degrees
+                                    << (normalized ? " normalised" : ""));
+    expect_mean(
+        trace_radiances(*b.freeze()), [&](double nm) { return diffuse * kd(nm) + glossy_albedo; }, 0.02);
+  }
+}
+
+// White matter in the normalised form never outshines its furnace, whatever is asked of it.
+TEST(Furnace, NormalisedRoughMatterLosesButNeverGains) {
+  SceneBuilder b = furnace(256, many_events);
+  b.add(sphere(0.6f), b.rough(b.constant(0.5), b.constant(1), 20, true), moved(-0.5, 0, 0));
+  b.add(sphere(0.6f), b.rough(b.constant(0.3), b.constant(0.7), 200, true), moved(0.5, 0, 0.3));
+  double sum = 0;
+  const std::vector<PathRadiance> paths = trace_radiances(*b.freeze());
+  for (const PathRadiance& path : paths)
+    for (const double radiance : path.radiance) {
+      EXPECT_LE(radiance, 1 + 1e-5);
+      sum += radiance;
+    }
+  EXPECT_GT(sum, 0.7 * 4 * double(paths.size()));
+  EXPECT_LT(sum, 4 * double(paths.size()));
+}
+
 }  // namespace
 }  // namespace metamer

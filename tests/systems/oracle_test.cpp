@@ -64,6 +64,22 @@ TEST(Oracle, AgreesOnAnisotropicMetalOfAMirroredInstancedMesh) {
   expect_agreement(*b.freeze(), 8192, 0.03);
 }
 
+TEST(Oracle, AgreesOnBothFormsOfRoughMatter) {
+  SceneBuilder b(side, side, 4096, 4);
+  const auto rgb = [&](double red, double green, double blue) {
+    return b.scene.spectra.add_rgb({red, green, blue}, RgbKind::albedo).id;
+  };
+  add_floor(b);
+  b.add(sphere(0.6f), b.rough(rgb(0.2, 0.05, 0.05), b.constant(0.4), 20, false), moved(-0.6, -0.4, 0));
+  b.add(sphere(0.6f), b.rough(rgb(0.1, 0.1, 0.5), b.constant(0.3), 50, true), moved(0.7, -0.4, 0));
+  b.add(rectangle(4, 4), b.rough(b.constant(0), rgb(0.1, 0.3, 0.1), 2, false), moved(0, 0, -1.5));
+  add_lamp(b, 2);
+  b.light(LightKind::environment, b.named("D65"), 0.002f);
+  b.light(LightKind::point, b.named("A"), 0.01f, moved(-0.4, 0.9, 1.5));
+  look(b);
+  expect_agreement(*b.freeze(), 4096, 0.02);
+}
+
 TEST(Oracle, AgreesOnASilverMirrorUnderAPointLight) {
   SceneBuilder b(side, side, 1024, 5);
   add_walls(b);

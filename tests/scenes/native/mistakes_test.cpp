@@ -217,6 +217,23 @@ TEST(NativeMistakes, MaterialsThatAreIncomplete) {
               HasSubstr("expected 'exact' or 'schlick'"));
 }
 
+TEST(NativeMistakes, RoughMaterials) {
+  const auto messages = [](const std::string& keys) {
+    return messages_of_material("{\"type\": \"rough\", " + keys + "}");
+  };
+  EXPECT_EQ(messages("\"kd\": 0.3, \"ks\": 5, \"shininess\": 500"), "");
+  EXPECT_EQ(messages("\"kd\": {\"rgb\": [0.3, 0.2, 0.1]}"), "");
+  EXPECT_THAT(messages("\"kd\": 0.3, \"ks\": 0.5, \"shininess\": -1"),
+              HasSubstr("scene.json:2: error: 'shininess' is the number -1; expected a number from 0 to 1000000"));
+  EXPECT_THAT(messages("\"kd\": -0.1"), HasSubstr("'kd' is the number -0.1; expected a number of at least 0"));
+  EXPECT_THAT(messages("\"ks\": {\"table\": [[400, 1], [500, -1]]}, \"shininess\": 3"),
+              HasSubstr("'table[1][1]' is the number -1"));
+  EXPECT_THAT(messages("\"kd\": 0.3, \"ks\": 0.5"), HasSubstr("lacks the required key 'shininess'"));
+  EXPECT_THAT(messages("\"ks\": 1.5, \"shininess\": 3, \"normalized\": true"),
+              HasSubstr("'ks' is the number 1.5; expected a number from 0 to 1"));
+  EXPECT_THAT(messages("\"kd\": 0.1, \"shinyness\": 3"), HasSubstr("(did you mean 'shininess'?)"));
+}
+
 TEST(NativeMistakes, NamesThatNobodyHas) {
   EXPECT_EQ(
       messages_of("{\"metamer\": 1,\n\"materials\": {\"steel\": {\"type\": \"diffuse\", \"reflectance\": 0.5}},\n"

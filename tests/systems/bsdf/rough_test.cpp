@@ -78,7 +78,8 @@ TEST(Rough, TheTaughtFormulaHasTheValuesOfPaperAndPencil) {
     set(c.wi, at(v.theta_i)), set(c.wo, at(v.theta_o));
     EXPECT_NEAR(reference::eval_rough(at(v.theta_o), optics(c), at(v.theta_i)).f_cos[0], v.radiance, 1e-7);
     for_each_target([&] {
-      for (const float f_cos : run_eval_rough({c})[0].value)
+      const BsdfResult value = run_eval_rough({c})[0];
+      for (const float f_cos : value.value)
         EXPECT_NEAR(f_cos, v.radiance, 2e-6) << v.theta_i << " " << v.theta_o << " " << v.shininess;
     });
   }

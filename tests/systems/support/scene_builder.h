@@ -41,6 +41,15 @@ struct SceneBuilder {
     material.alpha_y = alpha_y;
     return material;
   }
+  Material rough(SpectrumId kd, SpectrumId ks, float shininess, bool normalized) {
+    Material material;
+    material.kind = MaterialKind::rough;
+    material.kd = kd;
+    material.ks = ks;
+    material.shininess = shininess;
+    material.normalized = normalized;
+    return material;
+  }
   Material dielectric(SpectrumId eta) {
     Material material;
     material.kind = MaterialKind::dielectric;
