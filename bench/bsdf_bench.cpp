@@ -19,6 +19,7 @@
 #include "systems/bsdf/dielectric-inl.h"
 #include "systems/bsdf/diffuse-inl.h"
 #include "systems/bsdf/ggx-inl.h"
+#include "systems/bsdf/rough-inl.h"
 
 #ifndef METAMER_BENCH_BSDF_ONCE
 #define METAMER_BENCH_BSDF_ONCE
@@ -37,6 +38,8 @@ enum class Work {
   schlick_conductor,
   eval_diffuse,
   sample_diffuse,
+  eval_rough,
+  sample_rough,
   eval_conductor,
   sample_conductor,
   vertex_conductor,
@@ -108,6 +111,20 @@ void vertex(Batch& batch, size_t row) {
     load(batch.n, row, albedo);
     const BsdfSample sample = sample_diffuse(wo, albedo, u, v);
     store(sample.wi, sample.weight, sample.pdf, batch, row);
+  } else if constexpr (work == Work::eval_rough || work == Work::sample_rough) {
+    RoughOptics optics;
+    load(batch.n, row, optics.kd);
+    load(batch.kappa, row, optics.ks);
+    optics.shininess = hn::Mul(hn::Load(d, batch.alpha_x.data() + row), splat(100.0f));
+    optics.normalized = no_lane();
+    const RoughLobe lobe = make_rough_lobe(wo, optics);
+    if constexpr (work == Work::eval_rough) {
+      eval_rough(lobe, optics, wi, values, pdf);
+      store(wi, values, pdf, batch, row);
+    } else {
+      const BsdfSample sample = sample_rough(lobe, optics, hn::Load(d, batch.alpha_y.data() + row), u, v);
+      store(sample.wi, sample.weight, sample.pdf, batch, row);
+    }
   } else if constexpr (work == Work::eval_conductor) {
     eval_conductor(load_lobe(batch, row), load_metal(batch, row), wi, values, pdf);
     store(wi, values, pdf, batch, row);
@@ -144,6 +161,8 @@ void RunBsdfBatch(Work work, Batch& batch) {
     case Work::schlick_conductor: return all_vertices<Work::schlick_conductor>(batch);
     case Work::eval_diffuse: return all_vertices<Work::eval_diffuse>(batch);
     case Work::sample_diffuse: return all_vertices<Work::sample_diffuse>(batch);
+    case Work::eval_rough: return all_vertices<Work::eval_rough>(batch);
+    case Work::sample_rough: return all_vertices<Work::sample_rough>(batch);
     case Work::eval_conductor: return all_vertices<Work::eval_conductor>(batch);
     case Work::sample_conductor: return all_vertices<Work::sample_conductor>(batch);
     case Work::vertex_conductor: return all_vertices<Work::vertex_conductor>(batch);
@@ -202,6 +221,7 @@ double scalar_vertex(Work work, const Batch& batch, size_t row) {
   const r::Direction wo = row_of(batch.wo, row), wi = row_of(batch.wi, row);
   const r::Spectrum4 n = row_of(batch.n, row), eta = row_of(batch.eta, row);
   const r::ConductorOptics metal = {n, row_of(batch.kappa, row), false};
+  const r::RoughOptics rough = {n, row_of(batch.kappa, row), 100.0 * batch.alpha_x[row], false};
   const r::Roughness alpha = {batch.alpha_x[row], batch.alpha_y[row]};
   const double u = batch.u[row], v = batch.v[row];
   switch (work) {
@@ -211,6 +231,8 @@ double scalar_vertex(Work work, const Batch& batch, size_t row) {
     case Work::schlick_conductor: return r::schlick_conductor(n[0], metal.kappa[0], wo.z);
     case Work::eval_diffuse: return r::eval_diffuse(wo, n, wi).f_cos[0];
     case Work::sample_diffuse: return r::sample_diffuse(wo, n, u, v).wi.x;
+    case Work::eval_rough: return r::eval_rough(wo, rough, wi).f_cos[0];
+    case Work::sample_rough: return r::sample_rough(wo, rough, batch.alpha_y[row], u, v).weight[0];
     case Work::eval_conductor: return r::eval_conductor(wo, alpha, metal, wi).f_cos[0];
     case Work::sample_conductor: return r::sample_conductor(wo, alpha, metal, u, v).weight[0];
     case Work::vertex_conductor:
@@ -249,6 +271,8 @@ const bool registered = [] {
                                                 {"schlick_conductor", Work::schlick_conductor},
                                                 {"eval_diffuse", Work::eval_diffuse},
                                                 {"sample_diffuse", Work::sample_diffuse},
+                                                {"eval_rough", Work::eval_rough},
+                                                {"sample_rough", Work::sample_rough},
                                                 {"eval_conductor", Work::eval_conductor},
                                                 {"sample_conductor", Work::sample_conductor},
                                                 {"vertex_conductor", Work::vertex_conductor},

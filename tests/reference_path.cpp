@@ -79,9 +79,9 @@ struct Tracer {
       return plus(lit, go_on(hit, frame, reference::sample_diffuse(wo, albedo, u, v), lambda_nm, together, events));
     }
     if (kind == ShadeKind::rough) {
-      const reference::RoughOptics optics{spectrum(world.rough.kd[row], lambda_nm),
-                                          spectrum(world.rough.ks[row], lambda_nm), world.rough.shininess[row],
-                                          world.rough.normalized[row] != 0};
+      const reference::RoughOptics optics{reference_spectrum(world, world.rough.kd[row], lambda_nm),
+                                          reference_spectrum(world, world.rough.ks[row], lambda_nm),
+                                          world.rough.shininess[row], world.rough.normalized[row] != 0};
       const Spectrum4 lit =
           direct(hit, frame, lambda_nm, [&](const Direction& wi) { return reference::eval_rough(wo, optics, wi); });
       const double choice = random(), u = random(), v = random();

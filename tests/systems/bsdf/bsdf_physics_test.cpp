@@ -24,7 +24,22 @@ const Kernel kernels[] = {{"eval_diffuse", run_eval_diffuse},
                           {"sample_diffuse", run_sample_diffuse},
                           {"eval_conductor", run_eval_conductor},
                           {"sample_conductor", run_sample_conductor},
-                          {"sample_dielectric", run_sample_dielectric}};
+                          {"sample_dielectric", run_sample_dielectric},
+                          {"eval_rough", run_eval_rough},
+                          {"sample_rough", run_sample_rough}};
+
+// For the rough kernels, beside what random_metals sets.
+std::vector<BsdfCase> random_reflectors(size_t count) {
+  Random random(29);
+  std::vector<BsdfCase> cases = random_metals(count);
+  for (BsdfCase& c : cases) {
+    for (float& ks : c.ks) ks = random.uniform();
+    c.shininess = 200 * random.uniform() * random.uniform();
+    c.normalized = random.uniform() < 0.5f ? 1 : 0;
+    c.choice = random.uniform();
+  }
+  return cases;
+}
 
 bool same_bytes(const BsdfResult& a, const BsdfResult& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
 
@@ -82,15 +97,15 @@ TEST(BsdfPhysics, AWhiteMirrorReturnsExactlyWhatItReceives) {
 }
 
 TEST(BsdfPhysics, BothSidesOfAReflectorAreAlike) {
-  const std::vector<BsdfCase> cases = random_metals(20000);
+  const std::vector<BsdfCase> cases = random_reflectors(20000);
   std::vector<BsdfCase> below = cases;
   for (BsdfCase& c : below) c.wo[2] = -c.wo[2], c.wi[2] = -c.wi[2];
   for_each_target([&] {
-    for (size_t k = 0; k < 4; ++k) {
+    for (const size_t k : {0u, 1u, 2u, 3u, 5u, 6u}) {
       const std::vector<BsdfResult> up = kernels[k].run(cases);
       std::vector<BsdfResult> down = kernels[k].run(below);
       for (size_t i = 0; i < cases.size(); ++i) {
-        if (k == 1 || k == 3) down[i].wi[2] = -down[i].wi[2];
+        if (k == 1 || k == 3 || k == 6) down[i].wi[2] = -down[i].wi[2];
         EXPECT_TRUE(same_bytes(up[i], down[i])) << kernels[k].name;
       }
     }
@@ -98,10 +113,10 @@ TEST(BsdfPhysics, BothSidesOfAReflectorAreAlike) {
 }
 
 TEST(BsdfPhysics, WhatIsSeenEdgeOnReflectsNothing) {
-  std::vector<BsdfCase> cases = random_metals(1000);
+  std::vector<BsdfCase> cases = random_reflectors(1000);
   for (BsdfCase& c : cases) c.wo[0] = 1, c.wo[1] = 0, c.wo[2] = 0;
   for_each_target([&] {
-    for (const Kernel& kernel : {kernels[0], kernels[2], kernels[3]}) {
+    for (const Kernel& kernel : {kernels[0], kernels[2], kernels[3], kernels[5], kernels[6]}) {
       for (const BsdfResult& result : kernel.run(cases)) {
         for (const float value : result.value) EXPECT_EQ(value, 0.0f) << kernel.name;
         EXPECT_EQ(result.pdf, 0.0f) << kernel.name;
@@ -130,7 +145,7 @@ TEST(BsdfPhysics, WavelengthsDoNotSeeEachOther) {
 }
 
 TEST(BsdfPhysics, LanesDoNotSeeEachOther) {
-  std::vector<BsdfCase> cases = random_metals(5000);
+  std::vector<BsdfCase> cases = random_reflectors(5000);
   Random random(23);
   for (BsdfCase& c : cases) c.dispersive = random.uniform() < 0.5f ? 1 : 0;
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
