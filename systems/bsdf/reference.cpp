@@ -117,8 +117,9 @@ BsdfValue eval_rough(const Direction& wo, const RoughOptics& optics, const Direc
   if (wo.z * wi.z <= 0) return value;
   const double s = optics.shininess, share = glossy_share(optics);
   const double cos_i = std::abs(wi.z), cos_o = std::abs(wo.z);
-  const Direction h = normalize({wo.x + wi.x, wo.y + wi.y, wo.z + wi.z});
-  const double cos_delta = std::abs(h.z), cos_d = dot(wo, h);
+  // wi + wo = 2 cos(theta_d) H for unit vectors. dot(wo, H) would blow up what a float's direction lacks of length 1.
+  const Direction sum = {wo.x + wi.x, wo.y + wi.y, wo.z + wi.z};
+  const double cos_d = std::sqrt(dot(sum, sum)) / 2, cos_delta = std::abs(sum.z) / (2 * cos_d);
   for (size_t j = 0; j < 4; ++j) {
     const double f = optics.kd[j] / pi +
                      optics.ks[j] * (s + 1) / (8 * pi) * std::pow(cos_delta, s) / (cos_d * std::max(cos_i, cos_o));
