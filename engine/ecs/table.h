@@ -117,16 +117,12 @@ class Table {
   }
   template <class F>
   void each_column(F&& f) {
-    [&]<size_t... I>(std::index_sequence<I...>) {
-      (f(std::get<I>(C::fields), std::get<I>(columns_)), ...);
-    }
+    [&]<size_t... I>(std::index_sequence<I...>) { (f(std::get<I>(C::fields), std::get<I>(columns_)), ...); }
     (std::make_index_sequence<field_count>());
   }
   template <class F>
   void each_field(F&& f) const {
-    [&]<size_t... I>(std::index_sequence<I...>) {
-      (f(std::get<I>(C::fields), std::get<I>(columns_)), ...);
-    }
+    [&]<size_t... I>(std::index_sequence<I...>) { (f(std::get<I>(C::fields), std::get<I>(columns_)), ...); }
     (std::make_index_sequence<field_count>());
   }
 

@@ -25,15 +25,9 @@ inline constexpr float two_pi = 6.28318531f;
 inline constexpr float inverse_pi = 0.318309886f;
 
 // sqrt(max(x, 0)): for radicands that only rounding makes negative.
-HWY_INLINE VF safe_sqrt(VF x) {
-  return hn::Sqrt(hn::Max(x, hn::Zero(FloatTag())));
-}
-HWY_INLINE VF clamp(VF x, float low, float high) {
-  return hn::Min(hn::Max(x, splat(low)), splat(high));
-}
-HWY_INLINE VF saturate(VF x) {
-  return clamp(x, 0.0f, 1.0f);
-}
+HWY_INLINE VF safe_sqrt(VF x) { return hn::Sqrt(hn::Max(x, hn::Zero(FloatTag()))); }
+HWY_INLINE VF clamp(VF x, float low, float high) { return hn::Min(hn::Max(x, splat(low)), splat(high)); }
+HWY_INLINE VF saturate(VF x) { return clamp(x, 0.0f, 1.0f); }
 // Also true for -0.
 HWY_INLINE MF sign_bit_set(VF x) {
   return hn::RebindMask(FloatTag(), hn::Lt(hn::BitCast(IntTag(), x), hn::Zero(IntTag())));
