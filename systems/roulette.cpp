@@ -10,8 +10,9 @@ namespace {
 
 // From the fourth vertex on a path survives with the probability of its largest throughput (at most 1), the change of
 // radiance by refraction apart: what a path passes through glass and out again is no reason to end it. Earlier vertices
-// carry most of the picture: ending paths there costs more noise than it saves time (Cornell box and veach-mis, error
-// times processor time against a start at the second: 0.85 and 0.90).
+// carry most of the picture. Against a start at the second vertex, error times processor time over four seeds at 64
+// samples: Cornell box 0.87 (0.71 to 1.07), veach-mis 1.00 (0.83 to 1.18), which is to say a third less error on the
+// one, a fifth less on the other, for a third and a quarter more time.
 constexpr uint32_t first_roulette_depth = 3;
 
 void roulette_lanes(uint32_t depth, const ShadeStream& shade, size_t i, PathStream& next) {
