@@ -23,8 +23,13 @@ target_compile_options(metamer_flags INTERFACE -ffp-contract=off -fno-math-errno
 set(warnings -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi)
 target_compile_options(metamer_flags INTERFACE "$<BUILD_INTERFACE:${warnings}>")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  # The lowest machine. With this baseline Highway 1.0.3 compiles exactly SSE4, AVX2 and AVX3.
-  target_compile_options(metamer_flags INTERFACE -march=x86-64-v2 -maes -mpclmul)
+  if(METAMER_ONE_TARGET)
+    target_compile_options(metamer_flags INTERFACE -march=haswell -maes -mpclmul)
+    target_compile_definitions(metamer_flags INTERFACE HWY_COMPILE_ONLY_STATIC)
+  else()
+    # The lowest machine. With this baseline Highway 1.0.3 compiles exactly SSE4, AVX2 and AVX3.
+    target_compile_options(metamer_flags INTERFACE -march=x86-64-v2 -maes -mpclmul)
+  endif()
 endif()
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
   # NEON with AES, as Highway's NEON target wants it. Not SVE: vectors are members of structs here, which SVE's, of a
