@@ -59,11 +59,9 @@ std::unique_ptr<Batch> batch_at_depth(const World& world, uint32_t depth) {
   trace(world, 0, *batch);
   for (uint32_t d = 0; d < depth; ++d) {
     batch->shadow.size = 0;
-    shade_diffuse(world, d, batch->shade, batch->shadow);
-    shade_rough(world, d, batch->shade, batch->shadow);
-    shade_rough_conductor(world, d, batch->shade, batch->shadow);
+    shade_rough_kinds(world, {d}, batch->shade, batch->shadow);
     shade_smooth_conductor(world, batch->shade);
-    shade_dielectric(world, d, batch->shade);
+    shade_dielectric(world, d, Branch::drawn, batch->shade);
     roulette(d, batch->shade, batch->next);
     std::swap(batch->paths, batch->next);
     trace(world, d + 1, *batch);

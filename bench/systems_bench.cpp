@@ -24,11 +24,9 @@ struct Stage {
 
 uint32_t shade_all(const World& world, uint32_t depth, Batch& batch) {
   batch.shadow.size = 0;
-  shade_diffuse(world, depth, batch.shade, batch.shadow);
-  shade_rough(world, depth, batch.shade, batch.shadow);
-  shade_rough_conductor(world, depth, batch.shade, batch.shadow);
+  shade_rough_kinds(world, {depth}, batch.shade, batch.shadow);
   shade_smooth_conductor(world, batch.shade);
-  shade_dielectric(world, depth, batch.shade);
+  shade_dielectric(world, depth, Branch::drawn, batch.shade);
   return batch.paths.size;
 }
 

@@ -1,5 +1,8 @@
 #include "engine/streams.h"
 
+#include <cstring>
+#include <type_traits>
+
 namespace metamer {
 namespace {
 
@@ -9,13 +12,7 @@ void take_all(BatchArena& arena, size_t rows, Columns<float, N>& columns) {
 }
 
 void take_paths(BatchArena& arena, size_t rows, PathStream& s) {
-  take_all(arena, rows, s.origin);
-  take_all(arena, rows, s.direction);
-  take_all(arena, rows, s.lambda_nm);
-  take_all(arena, rows, s.throughput);
-  s.pdf_direction = arena.take<float>(rows);
-  s.eta_scale = arena.take<float>(rows);
-  for (uint32_t** column : {&s.pixel_seed, &s.index, &s.slot}) *column = arena.take<uint32_t>(rows);
+  for_each_column(s, [&](auto*& column) { column = arena.take<std::remove_reference_t<decltype(*column)>>(rows); });
 }
 
 void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
@@ -54,6 +51,30 @@ Batch::Batch() : arena(columns_in_all * column_bytes) {
   slots.pixel = arena.take<uint32_t>(rows);
   slots.sample = arena.take<uint32_t>(rows);
   order = arena.take<uint32_t>(rows);
+}
+
+void copy_columns(PathStream& from, uint32_t first, uint32_t count, PathStream& to) {
+  std::array<const void*, 32> columns;
+  size_t c = 0;
+  for_each_column(from, [&](auto*& column) { columns.at(c++) = column + first; });
+  c = 0;
+  for_each_column(to, [&](auto*& column) { std::memcpy(column, columns[c++], count * sizeof(*column)); });
+}
+
+void NodeStack::reserve(uint32_t rows) {
+  if (rows <= capacity) return;
+  capacity = std::max(rows, 2 * capacity);
+  const size_t stride = padded_to_lanes(size_t{capacity} + column_lanes) * sizeof(float);
+  size_t columns = 0;
+  for_each_column(*this, [&](auto*&) { ++columns; });
+  Column<std::byte> fresh(columns * stride);
+  std::byte* next = fresh.data();
+  for_each_column(*this, [&](auto*& column) {
+    if (rays.size > 0) std::memcpy(next, column, rays.size * sizeof(*column));
+    column = reinterpret_cast<std::remove_reference_t<decltype(column)>>(next);
+    next += stride;
+  });
+  memory.swap(fresh);
 }
 
 }  // namespace metamer

@@ -19,6 +19,9 @@ inline constexpr uint32_t dead_lane = 0xffffffffu;
 // What a hit's lanes are sorted by: each kind has its own kernel over all its lanes. The last two end a path.
 enum class ShadeKind : uint32_t { diffuse, rough, rough_conductor, smooth_conductor, dielectric, absorber, miss };
 inline constexpr uint32_t shade_kind_count = 7;
+// Rough kinds are lit by light samples, smooth kinds only by what lies in the few directions they answer to.
+inline constexpr ShadeKind rough_kinds[] = {ShadeKind::diffuse, ShadeKind::rough, ShadeKind::rough_conductor};
+inline constexpr ShadeKind smooth_kinds[] = {ShadeKind::smooth_conductor, ShadeKind::dielectric};
 
 // Lanes [begin, end) of a sorted stream; begin is a multiple of 16, lanes up to the next multiple are dead.
 struct Group {
@@ -51,7 +54,8 @@ using Columns = std::array<T*, N>;
 // Rows a sorted stream may need: every group may end in a partly filled vector.
 inline constexpr uint32_t sorted_capacity = batch_capacity + shade_kind_count * column_lanes;
 
-// Rays to trace and what their paths carry. Writers: camera_rays, then roulette.
+// Rays to trace and what their paths carry. Writers: camera_rays, then roulette, probe_rays or pop_nodes. A column more
+// needs a line in for_each_column and one in append_ray (systems/shade-inl.h).
 struct PathStream {
   uint32_t size = 0;
   Columns<float, 3> origin;      // metres
@@ -63,6 +67,22 @@ struct PathStream {
   uint32_t *pixel_seed, *index;  // the path's key into the low-discrepancy points
   uint32_t* slot;                // its row in Slots
 };
+
+template <class Visit>
+void for_each_column(PathStream& s, const Visit& visit) {
+  for (auto* columns : {&s.origin, &s.direction})
+    for (float*& column : *columns) visit(column);
+  for (auto* columns : {&s.lambda_nm, &s.throughput})
+    for (float*& column : *columns) visit(column);
+  visit(s.pdf_direction);
+  visit(s.eta_scale);
+  visit(s.pixel_seed);
+  visit(s.index);
+  visit(s.slot);
+}
+
+// Rows [first, first + count) of one stream to the front of another.
+void copy_columns(PathStream& from, uint32_t first, uint32_t count, PathStream& to);
 
 // Writer: intersect.
 struct HitStream {
@@ -108,22 +128,50 @@ struct ShadowStream {
   uint32_t* slot;
 };
 
-// What a path gathers, by its place in the batch.
+// What a path, or one node of a ray tree, gathers, by its place in the batch.
 struct Slots {
   uint32_t size = 0;
+  bool are_roots = true;  // camera samples; false: further nodes of trees whose roots are accounted for already
   Columns<float, 4> lambda_nm, inv_pdf_nm;
   Columns<float, 4> radiance;  // W m^-2 sr^-1 nm^-1, each wavelength on its own
   uint32_t *pixel, *sample;    // pixel of the tile (row-major), or dead_lane outside the picture; sample index
 };
 
+// Rays that wait for their turn: nodes of ray trees (recursive). Those of one depth lie together, the deepest last, and
+// the last are worked first, so that no more than a batch waits at each depth. Writers: push_nodes, pop_nodes.
+inline constexpr float least_node_importance = 1e-6f;  // of a camera ray's 1; nodes that carry less are dropped
+struct NodeStack {
+  struct Level {
+    uint32_t depth, begin;  // its nodes end where the next level begins
+  };
+  PathStream rays;  // `size` nodes; slot unused
+  Columns<float, 4> inv_pdf_nm;
+  uint32_t *pixel, *sample;
+  std::vector<Level> levels;
+  uint32_t capacity = 0;
+  Column<std::byte> memory;
+
+  // Room for so many rows and a vector of padding; what is there is kept.
+  void reserve(uint32_t rows);
+};
+template <class Visit>
+void for_each_column(NodeStack& s, const Visit& visit) {
+  for_each_column(s.rays, visit);
+  for (float*& column : s.inv_pdf_nm) visit(column);
+  visit(s.pixel);
+  visit(s.sample);
+}
+
 struct Batch {
   explicit Batch();
+  size_t bytes() const { return arena.bytes() + nodes.memory.bytes(); }
   BatchArena arena;
   PathStream paths, next;
   HitStream hits;
   ShadeStream shade;
   ShadowStream shadow;
   Slots slots;
+  NodeStack nodes;
   uint32_t* order;  // sorted lane -> path; dead_lane where padding
 };
 

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <numeric>
 #include <unordered_map>
 
 #include "systems/freeze.h"
@@ -121,6 +122,21 @@ std::vector<double> choice_weights(const World& world, std::span<const double> p
   return weights;
 }
 
+// Path tracing draws one light of all. The other integrators sum the abstract ones and draw one of the rest.
+void choose_lights(std::vector<double>& power, World& world) {
+  if (world.settings.integrator != Integrator::path)
+    for (uint32_t row = 0; row < power.size(); ++row) {
+      if (!is_abstract(static_cast<LightShape>(world.lights[row].shape))) continue;
+      if (power[row] > 0) world.summed_lights.push_back(row);
+      power[row] = 0;
+    }
+  const double total = std::accumulate(power.begin(), power.end(), 0.0);
+  if (!(total > 0)) return;
+  world.light_choice = make_distribution_1d(choice_weights(world, power, total));
+  for (uint32_t row = 0; row < power.size(); ++row)
+    world.lights[row].choice_probability = discrete_probability(world.light_choice, row);
+}
+
 }  // namespace
 
 void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics) {
@@ -156,9 +172,7 @@ void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, Worl
     for (uint32_t& light : world.objects.first_light) light = no_index;
     return;
   }
-  world.light_choice = make_distribution_1d(choice_weights(world, power, total));
-  for (size_t i = 0; i < power.size(); ++i)
-    world.lights[i].choice_probability = discrete_probability(world.light_choice, static_cast<uint32_t>(i));
+  choose_lights(power, world);
 }
 
 }  // namespace metamer

@@ -95,7 +95,9 @@ MaterialRow add_dielectric(const Material& material, World& world) {
   DielectricColumns& table = world.dielectric;
   table.eta.push_back(material.eta);
   table.schlick.push_back(material.fresnel == FresnelModel::schlick);
-  table.dispersive.push_back(!world.spectra.is_constant(material.eta));
+  const bool disperses = !world.spectra.is_constant(material.eta);
+  table.dispersive.push_back(disperses);
+  world.branches = std::max(world.branches, disperses ? 5u : 2u);
   return {ShadeKind::dielectric, static_cast<uint32_t>(table.eta.size() - 1)};
 }
 

@@ -18,10 +18,12 @@ HWY_INLINE void add_radiance(MF mask, const ShadeStream& shade, size_t i, const 
   }
 }
 
-// 1 where light sampling could not have found the light: straight from the camera, or after a mirror.
-HWY_INLINE VF weight_of(VF pdf_direction, VF pdf_light) {
+// 1 where light sampling could not have found the light: straight from the camera, or after a mirror. Without shadows
+// light samples stand for all the rest.
+HWY_INLINE VF weight_of(const World& world, VF pdf_direction, VF pdf_light) {
   const MF sampled = hn::Gt(pdf_direction, hn::Zero(FloatTag()));
-  return hn::IfThenElse(sampled, power_heuristic(pdf_direction, pdf_light), splat(1.0f));
+  const VF found = world.settings.shadows ? power_heuristic(pdf_direction, pdf_light) : hn::Zero(FloatTag());
+  return hn::IfThenElse(sampled, found, splat(1.0f));
 }
 
 void hit_emission(const World& world, const ShadeStream& shade, size_t i, Slots& slots) {
@@ -41,7 +43,7 @@ void hit_emission(const World& world, const ShadeStream& shade, size_t i, Slots&
   light_spectrum(world, light, lambda_nm, radiance);
   const Vec3 from = mul_add(wo, distance, position);
   const VF pdf_light = area_light_pdf(light, from, position, normal, -wo, distance);
-  add_radiance(seen, shade, i, radiance, weight_of(load(shade.pdf_direction, i), pdf_light), slots);
+  add_radiance(seen, shade, i, radiance, weight_of(world, load(shade.pdf_direction, i), pdf_light), slots);
 }
 
 void miss_emission(const World& world, const ShadeStream& shade, size_t i, Slots& slots) {
@@ -59,8 +61,8 @@ void miss_emission(const World& world, const ShadeStream& shade, size_t i, Slots
   }
   const VF pdf_light =
       hn::Mul(environment_pdf(environment, point), light.number(offsetof(LightRow, choice_probability)));
-  add_radiance(is_live(load(shade.slot, i)), shade, i, radiance, weight_of(load(shade.pdf_direction, i), pdf_light),
-               slots);
+  add_radiance(is_live(load(shade.slot, i)), shade, i, radiance,
+               weight_of(world, load(shade.pdf_direction, i), pdf_light), slots);
 }
 
 void emission_kernel(const World& world, const ShadeStream& shade, Slots& slots) {

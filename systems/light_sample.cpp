@@ -154,15 +154,9 @@ HWY_INLINE LightSample sample_light(const World& world, const LightFields& light
   return sample;
 }
 
-void light_sample_lanes(const World& world, uint32_t depth, ShadeStream& shade, size_t i) {
-  const PointKey key = {load(shade.pixel_seed, i), load(shade.index, i)};
-  const VF choice = sample_1d(key, splat_u(bounce_dimension(depth, light_choice_dimension)));
-  VF u, v;
-  sample_2d(key, splat_u(bounce_dimension(depth, light_point_dimension)), &u, &v);
-  const LightFields light(world, sample_discrete(world.light_choice, choice).index);
-  const Vec3 from = load(shade.position, i);
-  const LightSample sample = sample_light(world, light, from, u, v);
-  const VF probability = light.number(offsetof(LightRow, choice_probability));
+// What comes of a light that was chosen with `probability`.
+HWY_INLINE void store_light_sample(const World& world, const LightFields& light, const LightSample& sample,
+                                   VF probability, ShadeStream& shade, size_t i) {
   VF lambda_nm[4], radiance[4];
   load(shade.lambda_nm, i, lambda_nm);
   light_spectrum(world, light, lambda_nm, radiance);
@@ -177,13 +171,36 @@ void light_sample_lanes(const World& world, uint32_t depth, ShadeStream& shade, 
   store(sample.direction, shade.light_direction, i);
   store(sample.distance, shade.light_distance, i);
   store(radiance, shade.light_radiance, i);
-  store(hn::Mul(sample.pdf, probability), shade.light_pdf, i);
+  // Without shadows no ray looks for lights: the sample speaks for all of their light.
+  store(world.settings.shadows ? hn::Mul(sample.pdf, probability) : hn::Zero(FloatTag()), shade.light_pdf, i);
+}
+
+void light_sample_lanes(const World& world, uint32_t depth, ShadeStream& shade, size_t i) {
+  const PointKey key = {load(shade.pixel_seed, i), load(shade.index, i)};
+  const VF choice = sample_1d(key, splat_u(bounce_dimension(depth, light_choice_dimension)));
+  VF u, v;
+  sample_2d(key, splat_u(bounce_dimension(depth, light_point_dimension)), &u, &v);
+  const LightFields light(world, sample_discrete(world.light_choice, choice).index);
+  const LightSample sample = sample_light(world, light, load(shade.position, i), u, v);
+  store_light_sample(world, light, sample, light.number(offsetof(LightRow, choice_probability)), shade, i);
 }
 
 void light_sample_kernel(const World& world, uint32_t depth, ShadeStream& shade) {
-  for (const ShadeKind kind : {ShadeKind::diffuse, ShadeKind::rough, ShadeKind::rough_conductor}) {
+  for (const ShadeKind kind : rough_kinds) {
     const Group& group = shade.groups[static_cast<size_t>(kind)];
     for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) light_sample_lanes(world, depth, shade, i);
+  }
+}
+
+void light_towards_kernel(const World& world, uint32_t row, ShadeStream& shade) {
+  const VF zero = hn::Zero(FloatTag());
+  const LightFields light(world, hn::Set(IntTag(), static_cast<int>(row)));
+  for (const ShadeKind kind : rough_kinds) {
+    const Group& group = shade.groups[static_cast<size_t>(kind)];
+    for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
+      const LightSample sample = sample_light(world, light, load(shade.position, i), zero, zero);
+      store_light_sample(world, light, sample, splat(1.0f), shade, i);
+    }
   }
 }
 
@@ -195,9 +212,14 @@ HWY_AFTER_NAMESPACE();
 namespace metamer {
 
 HWY_EXPORT(light_sample_kernel);
+HWY_EXPORT(light_towards_kernel);
 
 void light_sample(const World& world, uint32_t depth, ShadeStream& shade) {
   HWY_DYNAMIC_DISPATCH(light_sample_kernel)(world, depth, shade);
+}
+
+void light_towards(const World& world, uint32_t row, ShadeStream& shade) {
+  HWY_DYNAMIC_DISPATCH(light_towards_kernel)(world, row, shade);
 }
 
 }  // namespace metamer

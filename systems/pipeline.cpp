@@ -13,6 +13,7 @@ using Clock = std::chrono::steady_clock;
 class StageClock {
  public:
   explicit StageClock(Counters& counters) : counters_(counters), last_(Clock::now()) {}
+  void restart() { last_ = Clock::now(); }
   void charge(SystemId system) {
     const Clock::time_point now = Clock::now();
     counters_.seconds[static_cast<size_t>(system)] += std::chrono::duration<double>(now - last_).count();
@@ -29,9 +30,8 @@ void count_lanes(const ShadeStream& shade, uint32_t paths, Counters& counters) {
   counters.live_lanes += paths;
 }
 
-// One vertex of every path of the batch. `last` vertices only look for light.
-void trace_vertices(const World& world, uint32_t depth, bool last, Batch& batch, Counters& counters) {
-  StageClock clock(counters);
+// What the rays of the batch meet, and the light they ran into.
+void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, Counters& counters) {
   PathStream& paths = batch.paths;
   if (depth == 0) {
     intersect_camera(world, paths, batch.hits, &counters.embree_seconds);
@@ -50,42 +50,128 @@ void trace_vertices(const World& world, uint32_t depth, bool last, Batch& batch,
   clock.charge(SystemId::surface);
   emission(world, shade, batch.slots);
   clock.charge(SystemId::emission);
-  batch.next.size = 0;
-  if (last) return;
-  if (!world.lights.empty()) light_sample(world, depth, shade);
-  clock.charge(SystemId::light_sample);
+}
+
+// Light on rough surfaces by the light samples that are in the stream.
+void weigh_lights(const World& world, const ShadeWork& work, Batch& batch, StageClock& clock, Counters& counters) {
   batch.shadow.size = 0;
-  shade_diffuse(world, depth, shade, batch.shadow);
-  shade_rough(world, depth, shade, batch.shadow);
-  shade_rough_conductor(world, depth, shade, batch.shadow);
-  shade_smooth_conductor(world, shade);
-  shade_dielectric(world, depth, shade);
+  shade_rough_kinds(world, work, batch.shade, batch.shadow);
   clock.charge(SystemId::shade);
   shadow(world, batch.shadow, batch.slots, &counters.embree_seconds);
-  counters.shadow_rays += batch.shadow.size;
+  if (world.settings.shadows) counters.shadow_rays += batch.shadow.size;
   clock.charge(SystemId::shadow);
+}
+
+// Light that comes straight from the light sources: the abstract ones one by one, which need no integration; of the
+// others one by chance, found by a sample of the light or by a ray in a direction of the surface's choice.
+void gather_direct_light(const World& world, uint32_t depth, Batch& batch, StageClock& clock, Counters& counters) {
+  for (const uint32_t row : world.summed_lights) {
+    light_towards(world, row, batch.shade);
+    clock.charge(SystemId::light_sample);
+    weigh_lights(world, {depth, true, false}, batch, clock, counters);
+  }
+  if (world.light_choice.size() == 0) return;
+  light_sample(world, depth, batch.shade);
+  clock.charge(SystemId::light_sample);
+  const bool probes = world.settings.shadows;
+  weigh_lights(world, {depth, true, probes}, batch, clock, counters);
+  if (!probes) return;
+  probe_rays(batch.shade, batch.next);
+  std::swap(batch.paths, batch.next);
+  clock.charge(SystemId::nodes);
+  meet(world, depth + 1, batch, clock, counters);
+}
+
+// Directions of the smooth surfaces, all of them, become nodes.
+void branch_out(const World& world, uint32_t depth, Batch& batch, StageClock& clock) {
+  const auto push = [&](ShadeKind kind, Branch branch) {
+    clock.charge(SystemId::shade);
+    push_nodes(batch.shade, batch.slots, depth + 1, kind, branch, batch.nodes);
+    clock.charge(SystemId::nodes);
+  };
+  shade_smooth_conductor(world, batch.shade);
+  push(ShadeKind::smooth_conductor, Branch::reflected);
+  const uint32_t last = static_cast<uint32_t>(world.branches > 2 ? Branch::refracted_3 : Branch::refracted);
+  for (uint32_t branch = static_cast<uint32_t>(Branch::reflected); branch <= last; ++branch) {
+    shade_dielectric(world, depth, static_cast<Branch>(branch), batch.shade);
+    push(ShadeKind::dielectric, static_cast<Branch>(branch));
+  }
+}
+
+// One vertex of every path of the batch. `last` vertices only look for light.
+void trace_vertices(const World& world, uint32_t depth, bool last, Batch& batch, Counters& counters) {
+  StageClock clock(counters);
+  meet(world, depth, batch, clock, counters);
+  batch.next.size = 0;
+  if (last) return;
+  ShadeStream& shade = batch.shade;
+  const bool has_lights = world.light_choice.size() > 0;
+  if (has_lights) light_sample(world, depth, shade);
+  clock.charge(SystemId::light_sample);
+  weigh_lights(world, {depth, has_lights, true}, batch, clock, counters);
+  shade_smooth_conductor(world, shade);
+  shade_dielectric(world, depth, Branch::drawn, shade);
+  clock.charge(SystemId::shade);
   roulette(depth, shade, batch.next);
   clock.charge(SystemId::roulette);
 }
 
 void trace_batch(const World& world, std::span<const RayPacket> packets, const TileRect& tile, Batch& batch,
                  TileFilm& film, Counters& counters) {
-  {
-    StageClock clock(counters);
-    camera_rays(world, packets, tile, batch.paths, batch.slots);
-    clock.charge(SystemId::camera_rays);
-  }
+  StageClock clock(counters);
+  camera_rays(world, packets, tile, batch.paths, batch.slots);
+  clock.charge(SystemId::camera_rays);
+  uint32_t depth = 0;
+  do {
+    trace_rays(world, depth, batch, counters);
+    clock.restart();
+    accumulate(world, batch.slots, film);
+    clock.charge(SystemId::accumulate);
+  } while (pop_nodes(rays_per_batch(world), batch.nodes, &depth, batch.paths, batch.slots));
+}
+
+}  // namespace
+
+void shade_rough_kinds(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
+  shade_diffuse(world, work, shade, shadow);
+  shade_rough(world, work, shade, shadow);
+  shade_rough_conductor(world, work, shade, shadow);
+}
+
+void trace_path(const World& world, Batch& batch, Counters& counters) {
   const uint32_t max_depth = world.settings.max_depth;
   for (uint32_t depth = 0; depth <= max_depth && batch.paths.size > 0; ++depth) {
     trace_vertices(world, depth, depth == max_depth, batch, counters);
     std::swap(batch.paths, batch.next);
   }
-  StageClock clock(counters);
-  accumulate(world, batch.slots, film);
-  clock.charge(SystemId::accumulate);
 }
 
-}  // namespace
+void trace_local(const World& world, Batch& batch, Counters& counters) {
+  StageClock clock(counters);
+  meet(world, 0, batch, clock, counters);
+  if (world.settings.max_depth > 0) gather_direct_light(world, 0, batch, clock, counters);
+}
+
+void trace_recursive(const World& world, uint32_t depth, Batch& batch, Counters& counters) {
+  StageClock clock(counters);
+  meet(world, depth, batch, clock, counters);
+  if (depth == world.settings.max_depth) return;
+  branch_out(world, depth, batch, clock);
+  gather_direct_light(world, depth, batch, clock, counters);
+}
+
+void trace_rays(const World& world, uint32_t depth, Batch& batch, Counters& counters) {
+  switch (world.settings.integrator) {
+    case Integrator::local: return trace_local(world, batch, counters);
+    case Integrator::recursive: return trace_recursive(world, depth, batch, counters);
+    case Integrator::path: return trace_path(world, batch, counters);
+  }
+}
+
+uint32_t rays_per_batch(const World& world) {
+  const uint32_t branches = world.settings.integrator == Integrator::recursive ? world.branches : 1;
+  return batch_capacity / branches / column_lanes * column_lanes;
+}
 
 void Counters::add(const Counters& other) {
   for (size_t i = 0; i < system_count; ++i) seconds[i] += other.seconds[i];
@@ -104,6 +190,7 @@ void trace_tile(const World& world, const TileRect& tile, uint32_t sample_begin,
   film.reset(tile.x0, tile.y0, tile.width(), tile.height(), sample_begin, sample_end);
   constexpr uint32_t packets_per_batch = batch_capacity / column_lanes;
   std::array<RayPacket, packets_per_batch> packets;
+  const uint32_t most = rays_per_batch(world) / column_lanes;
   uint32_t count = 0;
   const auto flush_batch = [&] {
     if (count > 0) trace_batch(world, {packets.data(), count}, tile, batch, film, counters);
@@ -113,7 +200,7 @@ void trace_tile(const World& world, const TileRect& tile, uint32_t sample_begin,
     for (uint32_t y = tile.y0 & ~3u; y < tile.y1; y += 4)
       for (uint32_t x = tile.x0 & ~3u; x < tile.x1; x += 4) {
         packets[count++] = {x, y, sample};
-        if (count == packets_per_batch) flush_batch();
+        if (count == most) flush_batch();
       }
   flush_batch();
   counters.samples += uint64_t{tile.width()} * tile.height() * (sample_end - sample_begin);

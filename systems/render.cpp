@@ -84,7 +84,7 @@ RenderStats render(const World& world, const RenderOptions& options, const Cance
   stats.render_seconds = seconds_since(frame.start);
   stats.cpu_seconds = process_cpu_seconds() - cpu_before;
   stats.first_pixel_seconds = frame.first_pixel_seconds;
-  stats.batch_bytes = frame.workers.front()->batch.arena.bytes();
+  stats.batch_bytes = frame.workers.front()->batch.bytes();
   for (const auto& worker : frame.workers) stats.counters.add(worker->counters);
   to_processor_time(stats);
   return stats;

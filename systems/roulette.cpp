@@ -19,9 +19,8 @@ void roulette_lanes(uint32_t depth, const ShadeStream& shade, size_t i, PathStre
   const FloatTag d;
   const VF zero = hn::Zero(d), one = splat(1.0f);
   VF throughput[4];
-  for (size_t j = 0; j < 4; ++j) throughput[j] = hn::Mul(load(shade.throughput[j], i), load(shade.next_weight[j], i));
-  const VF eta_scale = hn::Mul(load(shade.eta_scale, i), load(shade.next_eta_scale, i));
-  const VF importance = hn::Mul(max_of(throughput), eta_scale);
+  next_throughput(shade, i, throughput);
+  const VF importance = hn::Mul(max_of(throughput), next_eta_scale(shade, i));
   MF survives = hn::And(is_live(load(shade.slot, i)), hn::Gt(importance, zero));
   if (depth >= first_roulette_depth) {
     const VF probability = hn::Min(importance, one);
@@ -32,20 +31,7 @@ void roulette_lanes(uint32_t depth, const ShadeStream& shade, size_t i, PathStre
   }
   const Vec3 direction = load(shade.next_direction, i), origin = ray_origin(shade, i, direction);
   survives = hn::And(survives, is_traceable(origin, direction));
-  if (hn::AllFalse(d, survives)) return;
-  const size_t at = next.size;
-  append(survives, origin, next.origin, at);
-  append(survives, direction, next.direction, at);
-  VF lambda_nm[4];
-  load(shade.lambda_nm, i, lambda_nm);
-  append(survives, lambda_nm, next.lambda_nm, at);
-  append(survives, throughput, next.throughput, at);
-  append(survives, load(shade.next_pdf, i), next.pdf_direction, at);
-  append(survives, eta_scale, next.eta_scale, at);
-  append(survives, load(shade.pixel_seed, i), next.pixel_seed, at);
-  append(survives, load(shade.index, i), next.index, at);
-  append(survives, load(shade.slot, i), next.slot, at);
-  next.size += static_cast<uint32_t>(hn::CountTrue(d, survives));
+  append_ray(survives, shade, i, {origin, direction}, throughput, next);
 }
 
 void roulette_kernel(uint32_t depth, const ShadeStream& shade, PathStream& next) {

@@ -85,6 +85,58 @@ HWY_INLINE const Group& group_of(const ShadeStream& shade, ShadeKind kind) {
 HWY_INLINE PointKey point_key(const ShadeStream& shade, size_t i) {
   return {load(shade.pixel_seed, i), load(shade.index, i)};
 }
+// What the path carries behind this vertex.
+HWY_INLINE void next_throughput(const ShadeStream& shade, size_t i, VF out[4]) {
+  for (size_t j = 0; j < 4; ++j) out[j] = hn::Mul(load(shade.throughput[j], i), load(shade.next_weight[j], i));
+}
+HWY_INLINE VF next_eta_scale(const ShadeStream& shade, size_t i) {
+  return hn::Mul(load(shade.eta_scale, i), load(shade.next_eta_scale, i));
+}
+// Appends the rays of `mask` to a stream with all that goes along with the path.
+struct NextRay {
+  Vec3 origin, direction;
+};
+HWY_INLINE void append_ray(MF mask, const ShadeStream& shade, size_t i, const NextRay& ray, const VF throughput[4],
+                           PathStream& next) {
+  if (hn::AllFalse(FloatTag(), mask)) return;
+  const size_t at = next.size;
+  VF lambda_nm[4];
+  load(shade.lambda_nm, i, lambda_nm);
+  append(mask, ray.origin, next.origin, at);
+  append(mask, ray.direction, next.direction, at);
+  append(mask, lambda_nm, next.lambda_nm, at);
+  append(mask, throughput, next.throughput, at);
+  append(mask, load(shade.next_pdf, i), next.pdf_direction, at);
+  append(mask, next_eta_scale(shade, i), next.eta_scale, at);
+  append(mask, load(shade.pixel_seed, i), next.pixel_seed, at);
+  append(mask, load(shade.index, i), next.index, at);
+  append(mask, load(shade.slot, i), next.slot, at);
+  next.size += static_cast<uint32_t>(hn::CountTrue(FloatTag(), mask));
+}
+
+// The wavelength that decides where the others of `branch` go.
+HWY_INLINE size_t leading_wavelength(Branch branch) {
+  return branch < Branch::refracted_0 ? 0 : static_cast<size_t>(branch) - static_cast<size_t>(Branch::refracted_0);
+}
+// What a smooth kind draws its lobe with, reflection below the probability of reflection: by chance, or so that it is
+// the lobe wanted if there is one.
+HWY_INLINE VF branch_number(const ShadeStream& shade, size_t i, uint32_t depth, Branch branch) {
+  if (branch == Branch::drawn) return sample_1d(point_key(shade, i), splat_u(bounce_dimension(depth, lobe_dimension)));
+  return splat(branch == Branch::reflected ? 0.0f : 0x1.fffffep-1f);
+}
+// From the weights of the lobe that came of it to those of the branch: without the division by its probability, and 0
+// where it is another lobe. `disperses`: the wavelengths of these lanes part in refraction.
+HWY_INLINE void keep_branch(Branch branch, MF disperses, MF transmitted, VF probability, VF weight[4]) {
+  if (branch == Branch::drawn) return;
+  MF kept = hn::And(transmitted, disperses);
+  if (branch == Branch::refracted) kept = hn::AndNot(disperses, transmitted);
+  if (branch == Branch::reflected) kept = hn::Not(transmitted);
+  for (size_t j = 0; j < 4; ++j) {
+    const bool goes = branch <= Branch::refracted || j == leading_wavelength(branch);
+    weight[j] = goes ? hn::IfThenElseZero(kept, hn::Mul(weight[j], probability)) : hn::Zero(FloatTag());
+  }
+}
+
 // The material row of live lanes, 0 in dead ones.
 HWY_INLINE VI material_row(const ShadeStream& shade, size_t i) {
   const auto live = hn::Ne(load(shade.slot, i), splat_u(dead_lane));

@@ -20,7 +20,7 @@ HWY_INLINE ConductorOptics conductor_optics(const World& world, const ShadeStrea
   return optics;
 }
 
-void shade_rough_conductor_kernel(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow) {
+void shade_rough_conductor_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
   const Group& group = group_of(shade, ShadeKind::rough_conductor);
   for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
     const VI row = material_row(shade, i);
@@ -30,9 +30,12 @@ void shade_rough_conductor_kernel(const World& world, uint32_t depth, ShadeStrea
     const GgxLobe lobe =
         make_ggx_lobe(wo, gather(world.conductor.alpha_x.data(), row), gather(world.conductor.alpha_y.data(), row));
     VF f_cos[4], pdf, u, v;
-    eval_conductor(lobe, optics, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
-    append_shadow_rays(shade, i, f_cos, pdf, shadow);
-    sample_2d(point_key(shade, i), splat_u(bounce_dimension(depth, direction_dimension)), &u, &v);
+    if (work.weigh_light) {
+      eval_conductor(lobe, optics, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
+      append_shadow_rays(shade, i, f_cos, pdf, shadow);
+    }
+    if (!work.draw_next) continue;
+    sample_2d(point_key(shade, i), splat_u(bounce_dimension(work.depth, direction_dimension)), &u, &v);
     const BsdfSample next = sample_conductor(lobe, optics, u, v);
     store_next(frame, next.wi, next.weight, next.pdf, shade, i);
     store(splat(1.0f), shade.next_eta_scale, i);
@@ -64,8 +67,8 @@ namespace metamer {
 HWY_EXPORT(shade_rough_conductor_kernel);
 HWY_EXPORT(shade_smooth_conductor_kernel);
 
-void shade_rough_conductor(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow) {
-  HWY_DYNAMIC_DISPATCH(shade_rough_conductor_kernel)(world, depth, shade, shadow);
+void shade_rough_conductor(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
+  HWY_DYNAMIC_DISPATCH(shade_rough_conductor_kernel)(world, work, shade, shadow);
 }
 
 void shade_smooth_conductor(const World& world, ShadeStream& shade) {

@@ -23,17 +23,24 @@ HWY_INLINE DielectricOptics dielectric_optics(const World& world, const ShadeStr
   return optics;
 }
 
-void shade_dielectric_kernel(const World& world, uint32_t depth, ShadeStream& shade) {
+void shade_dielectric_kernel(const World& world, uint32_t depth, Branch branch, ShadeStream& shade) {
   const VF zero = hn::Zero(FloatTag()), one = splat(1.0f);
   const Group& group = group_of(shade, ShadeKind::dielectric);
   for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
-    const DielectricOptics optics = dielectric_optics(world, shade, i, material_row(shade, i));
+    DielectricOptics optics = dielectric_optics(world, shade, i, material_row(shade, i));
+    const MF disperses = optics.dispersive;
+    if (branch >= Branch::refracted) {  // each wavelength that goes alone is its own hero
+      optics.eta[0] = optics.eta[leading_wavelength(branch)];
+      optics.dispersive = hn::Lt(one, zero);
+    }
     const Frame frame = shading_frame(world, shade, i);
     const Vec3 wo = to_local(frame, load(shade.wo, i));
-    const VF u = sample_1d(point_key(shade, i), splat_u(bounce_dimension(depth, lobe_dimension)));
+    const VF u = branch_number(shade, i, depth, branch);
     DielectricSample next = sample_dielectric(wo, optics, u);
-    // The hero stands for all four wavelengths of the mean that accumulate takes.
-    next.weight[0] = hn::IfThenElse(next.terminate_secondary, hn::Mul(next.weight[0], splat(4.0f)), next.weight[0]);
+    // Drawn, the hero stands for all four wavelengths of the mean that accumulate takes.
+    const MF stands_alone = branch == Branch::drawn ? next.terminate_secondary : hn::Lt(one, zero);
+    next.weight[0] = hn::IfThenElse(stands_alone, hn::Mul(next.weight[0], splat(4.0f)), next.weight[0]);
+    keep_branch(branch, disperses, next.transmitted, next.probability, next.weight);
     store_next(frame, next.wi, next.weight, zero, shade, i);
     const VF eta = hn::IfThenElse(hn::Lt(wo.z, zero), hn::Div(one, optics.eta[0]), optics.eta[0]);
     store(hn::IfThenElse(next.transmitted, hn::Mul(eta, eta), one), shade.next_eta_scale, i);
@@ -49,8 +56,8 @@ namespace metamer {
 
 HWY_EXPORT(shade_dielectric_kernel);
 
-void shade_dielectric(const World& world, uint32_t depth, ShadeStream& shade) {
-  HWY_DYNAMIC_DISPATCH(shade_dielectric_kernel)(world, depth, shade);
+void shade_dielectric(const World& world, uint32_t depth, Branch branch, ShadeStream& shade) {
+  HWY_DYNAMIC_DISPATCH(shade_dielectric_kernel)(world, depth, branch, shade);
 }
 
 }  // namespace metamer

@@ -9,7 +9,7 @@ HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
 namespace {
 
-void shade_diffuse_kernel(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow) {
+void shade_diffuse_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
   const SpectrumView spectra = world.spectra.view();
   const Group& group = group_of(shade, ShadeKind::diffuse);
   for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
@@ -18,9 +18,12 @@ void shade_diffuse_kernel(const World& world, uint32_t depth, ShadeStream& shade
     eval_spectrum4(spectra, gather(world.diffuse.reflectance.data(), material_row(shade, i)), lambda_nm, albedo);
     const Frame frame = shading_frame(world, shade, i);
     const Vec3 wo = to_local(frame, load(shade.wo, i));
-    eval_diffuse(wo, albedo, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
-    append_shadow_rays(shade, i, f_cos, pdf, shadow);
-    sample_2d(point_key(shade, i), splat_u(bounce_dimension(depth, direction_dimension)), &u, &v);
+    if (work.weigh_light) {
+      eval_diffuse(wo, albedo, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
+      append_shadow_rays(shade, i, f_cos, pdf, shadow);
+    }
+    if (!work.draw_next) continue;
+    sample_2d(point_key(shade, i), splat_u(bounce_dimension(work.depth, direction_dimension)), &u, &v);
     const BsdfSample next = sample_diffuse(wo, albedo, u, v);
     store_next(frame, next.wi, next.weight, next.pdf, shade, i);
     store(splat(1.0f), shade.next_eta_scale, i);
@@ -36,8 +39,8 @@ namespace metamer {
 
 HWY_EXPORT(shade_diffuse_kernel);
 
-void shade_diffuse(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow) {
-  HWY_DYNAMIC_DISPATCH(shade_diffuse_kernel)(world, depth, shade, shadow);
+void shade_diffuse(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
+  HWY_DYNAMIC_DISPATCH(shade_diffuse_kernel)(world, work, shade, shadow);
 }
 
 }  // namespace metamer

@@ -22,18 +22,21 @@ HWY_INLINE RoughOptics rough_optics(const World& world, const ShadeStream& shade
   return optics;
 }
 
-void shade_rough_kernel(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow) {
+void shade_rough_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
   const Group& group = group_of(shade, ShadeKind::rough);
   for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
     const RoughOptics optics = rough_optics(world, shade, i);
     const Frame frame = shading_frame(world, shade, i);
     const RoughLobe lobe = make_rough_lobe(to_local(frame, load(shade.wo, i)), optics);
     VF f_cos[4], pdf, u, v;
-    eval_rough(lobe, optics, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
-    append_shadow_rays(shade, i, f_cos, pdf, shadow);
+    if (work.weigh_light) {
+      eval_rough(lobe, optics, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
+      append_shadow_rays(shade, i, f_cos, pdf, shadow);
+    }
+    if (!work.draw_next) continue;
     const PointKey key = point_key(shade, i);
-    const VF choice = sample_1d(key, splat_u(bounce_dimension(depth, lobe_dimension)));
-    sample_2d(key, splat_u(bounce_dimension(depth, direction_dimension)), &u, &v);
+    const VF choice = sample_1d(key, splat_u(bounce_dimension(work.depth, lobe_dimension)));
+    sample_2d(key, splat_u(bounce_dimension(work.depth, direction_dimension)), &u, &v);
     const BsdfSample next = sample_rough(lobe, optics, choice, u, v);
     store_next(frame, next.wi, next.weight, next.pdf, shade, i);
     store(splat(1.0f), shade.next_eta_scale, i);
@@ -49,8 +52,8 @@ namespace metamer {
 
 HWY_EXPORT(shade_rough_kernel);
 
-void shade_rough(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow) {
-  HWY_DYNAMIC_DISPATCH(shade_rough_kernel)(world, depth, shade, shadow);
+void shade_rough(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
+  HWY_DYNAMIC_DISPATCH(shade_rough_kernel)(world, work, shade, shadow);
 }
 
 }  // namespace metamer

@@ -22,9 +22,18 @@ void start_ray(const ShadowStream& shadow, uint32_t i, RTCRay& ray) {
   ray.flags = 0;
 }
 
+void add_contribution(const ShadowStream& shadow, uint32_t i, Slots& slots) {
+  const uint32_t slot = shadow.slot[i];
+  for (size_t j = 0; j < 4; ++j) slots.radiance[j][slot] += shadow.contribution[j][i];
+}
+
 }  // namespace
 
 void shadow(const World& world, const ShadowStream& shadow, Slots& slots, double* embree_seconds) {
+  if (!world.settings.shadows) {
+    for (uint32_t i = 0; i < shadow.size; ++i) add_contribution(shadow, i, slots);
+    return;
+  }
   using Clock = std::chrono::steady_clock;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -35,11 +44,8 @@ void shadow(const World& world, const ShadowStream& shadow, Slots& slots, double
     const Clock::time_point start = Clock::now();
     for (uint32_t k = 0; k < count; ++k) rtcOccluded1(world.accelerator->root, &context, &rays[k]);
     *embree_seconds += std::chrono::duration<double>(Clock::now() - start).count();
-    for (uint32_t k = 0; k < count; ++k) {
-      if (rays[k].tfar < 0) continue;  // Embree's word for occluded
-      const uint32_t slot = shadow.slot[begin + k];
-      for (size_t j = 0; j < 4; ++j) slots.radiance[j][slot] += shadow.contribution[j][begin + k];
-    }
+    for (uint32_t k = 0; k < count; ++k)
+      if (!(rays[k].tfar < 0)) add_contribution(shadow, begin + k, slots);  // below 0: Embree's word for occluded
   }
 }
 

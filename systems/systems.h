@@ -28,9 +28,10 @@ enum class SystemId : uint32_t {
   shade,
   shadow,
   roulette,
+  nodes,
   accumulate
 };
-inline constexpr size_t system_count = 10;
+inline constexpr size_t system_count = 11;
 struct Counters {
   double seconds[system_count] = {};
   double embree_seconds = 0;
@@ -59,21 +60,47 @@ void surface(const World& world, const PathStream& paths, const HitStream& hits,
 // Light that the rays ran into, weighted against having been sampled (power heuristic).
 void emission(const World& world, const ShadeStream& shade, Slots& slots);
 
-// Chooses a light for each lane whose BSDF is not a delta, and a direction towards it.
+// Chooses a light for each lane of a rough kind, and a direction towards it.
 void light_sample(const World& world, uint32_t depth, ShadeStream& shade);
 
-// BSDF kernels by kind: weigh the light sample (appended to `shadow` unless 0) and draw the next direction.
-void shade_diffuse(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow);
-void shade_rough(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow);
-void shade_rough_conductor(const World& world, uint32_t depth, ShadeStream& shade, ShadowStream& shadow);
-void shade_smooth_conductor(const World& world, ShadeStream& shade);
-void shade_dielectric(const World& world, uint32_t depth, ShadeStream& shade);
+// The direction to one abstract light, chosen by nobody: for sums over all of them.
+void light_towards(const World& world, uint32_t row, ShadeStream& shade);
 
-// Adds the contributions whose light is in sight.
+// BSDF kernels of rough kinds: weigh the light sample (appended to `shadow` unless 0) and draw the next direction, or
+// only one of the two, where a vertex has many light samples or nothing follows it.
+struct ShadeWork {
+  uint32_t depth = 0;
+  bool weigh_light = true, draw_next = true;
+};
+void shade_diffuse(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
+void shade_rough(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
+void shade_rough_conductor(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
+// All of them, one after the other.
+void shade_rough_kinds(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
+
+// BSDF kernels of smooth kinds: one of the few directions that light takes there. `drawn` chooses it by chance and
+// divides its weight by the probability. The others take no chance and divide by nothing, the weight is 0 in lanes
+// without that direction: `refracted` where all wavelengths go together, `refracted_j` where they part, wavelength j
+// alone. A kind that only reflects has no weight in the last five, and need not be called for them.
+enum class Branch : uint32_t { drawn, reflected, refracted, refracted_0, refracted_1, refracted_2, refracted_3 };
+void shade_smooth_conductor(const World& world, ShadeStream& shade);
+void shade_dielectric(const World& world, uint32_t depth, Branch branch, ShadeStream& shade);
+
+// Adds the contributions whose light is in sight; all of them where the scene casts no shadows.
 void shadow(const World& world, const ShadowStream& shadow, Slots& slots, double* embree_seconds);
 
 // Ends paths that carry little, without bias, and makes the rays of the others.
 void roulette(uint32_t depth, const ShadeStream& shade, PathStream& next);
+
+// The next directions of rough kinds as rays that only look for light (local, recursive).
+void probe_rays(const ShadeStream& shade, PathStream& next);
+
+// Keeps what was shaded for `branch` as nodes of `depth` that wait, and takes the last up to `most` of them out, all of
+// one depth, into the slots 0, 1, ...; false where none is left. Stops the program where more than a batch would wait
+// for each depth. A node's pixel_seed is a hash of its parent's and the branch: numbers belong to places in the tree.
+void push_nodes(const ShadeStream& shade, const Slots& slots, uint32_t depth, ShadeKind kind, Branch branch,
+                NodeStack& nodes);
+bool pop_nodes(uint32_t most, NodeStack& nodes, uint32_t* depth, PathStream& paths, Slots& slots);
 
 // Radiances to XYZ, into the tile's exact sums.
 void accumulate(const World& world, Slots& slots, TileFilm& film);

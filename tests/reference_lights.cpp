@@ -52,12 +52,12 @@ Spectrum4 environment_image(const Environment& e, const glm::dvec2& uv, const Sp
   return sum;
 }
 
-Vector random_on_sphere(ReferenceRandom& random) {
+}  // namespace
+
+Vector reference_direction(ReferenceRandom& random) {
   const double z = 1 - 2 * random(), phi = 2 * pi * random(), r = std::sqrt(std::max(0.0, 1 - z * z));
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
-
-}  // namespace
 
 Spectrum4 reference_spectrum(const World& world, uint32_t id, const Spectrum4& lambda_nm) {
   Spectrum4 values;
@@ -87,21 +87,14 @@ Spectrum4 reference_environment(const World& world, const Vector& direction, con
   for (size_t j = 0; j < 4; ++j) values[j] *= factor[j];
   return values;
 }
-ReferenceLightPoint reference_light(const World& world, const Vector& from, ReferenceRandom& random, uint32_t* chosen) {
-  std::vector<uint32_t> candidates;
-  for (uint32_t i = 0; i < world.lights.size(); ++i)
-    if (world.lights[i].shape != static_cast<uint32_t>(LightShape::environment)) candidates.push_back(i);
+ReferenceLightPoint reference_light_point(const LightRow& row, const Vector& from, ReferenceRandom& random) {
   ReferenceLightPoint sample;
-  if (candidates.empty()) return sample;
-  *chosen = candidates[std::min(static_cast<size_t>(random() * double(candidates.size())), candidates.size() - 1)];
-  const LightRow& row = world.lights[*chosen];
-  const double count = double(candidates.size());
   const Vector p = read3(row.p), a = read3(row.axes), b = read3(row.axes + 3), c = read3(row.axes + 6);
   const auto shape = static_cast<LightShape>(row.shape);
-  if (shape == LightShape::directional) return {glm::normalize(p), infinity, count};
+  if (shape == LightShape::directional) return {glm::normalize(p), infinity, 1};
   if (shape == LightShape::point) {
     const double d = glm::length(p - from);
-    return {(p - from) / d, d, count / (d * d)};
+    return {(p - from) / d, d, 1 / (d * d)};
   }
   Vector at, area;  // the point, and the area vector per unit density
   if (shape == LightShape::triangle) {
@@ -119,7 +112,7 @@ ReferenceLightPoint reference_light(const World& world, const Vector& from, Refe
     at = p + a * x + b * y;
     area = read3(row.normal) * (pi * (1 - double{row.inner} * row.inner) * glm::length(glm::cross(a, b)));
   } else {
-    const Vector q = random_on_sphere(random);
+    const Vector q = reference_direction(random);
     const glm::dmat3 axes(a, b, c);
     at = p + axes * q;
     area = std::abs(glm::determinant(axes)) * (glm::transpose(glm::inverse(axes)) * q) * (4 * pi) *
@@ -130,7 +123,7 @@ ReferenceLightPoint reference_light(const World& world, const Vector& from, Refe
   sample.distance = d;
   double projected = -glm::dot(area, sample.direction);
   if (row.two_sided != 0) projected = std::abs(projected);
-  sample.factor = projected > 0 ? count * projected / (d * d) : 0;
+  sample.factor = projected > 0 ? projected / (d * d) : 0;
   return sample;
 }
 

@@ -32,8 +32,9 @@ struct ReferenceLightPoint {
   double factor = 0;  // on the light's spectrum: what of it arrives, divided by the density
 };
 
-// One light, uniformly chosen among those that are not the environment; a point of it, uniformly by area (of the
-// unit sphere it is the image of). `chosen`: its row.
-ReferenceLightPoint reference_light(const World& world, const Vector& from, ReferenceRandom& random, uint32_t* chosen);
+// A point of a light that is not the environment, uniformly by area (of the unit sphere it is the image of).
+ReferenceLightPoint reference_light_point(const LightRow& row, const Vector& from, ReferenceRandom& random);
+// Uniform over all directions, for the environment.
+Vector reference_direction(ReferenceRandom& random);
 
 }  // namespace metamer

@@ -23,7 +23,16 @@ struct Tracer {
   ReferenceScene scene;
   ReferenceRandom random;
 
-  Tracer(const World& frozen, uint32_t seed) : world(frozen), scene(frozen), random(seed) {}
+  bool is_path;
+  std::vector<uint32_t> summed, chosen;  // lights without the environment: all of these, and one of those
+
+  Tracer(const World& frozen, uint32_t seed)
+      : world(frozen), scene(frozen), random(seed), is_path(frozen.settings.integrator == Integrator::path) {
+    for (uint32_t row = 0; row < world.lights.size(); ++row) {
+      const auto shape = static_cast<LightShape>(world.lights[row].shape);
+      if (shape != LightShape::environment) (!is_path && is_abstract(shape) ? summed : chosen).push_back(row);
+    }
+  }
 
   struct LocalFrame {
     Vector x, y, z;
@@ -42,11 +51,12 @@ struct Tracer {
   }
 
   // Radiance that arrives at `origin` against `direction` after at most `events` scatterings. `sees_lights`: area
-  // lights count where they are hit, not having been sampled before. `together`: four wavelengths on one way.
+  // lights count where they are hit, not having been sampled before; `sees_sky`: so does the environment. `together`:
+  // four wavelengths on one way.
   Spectrum4 radiance(const Vector& origin, const Vector& direction, const Spectrum4& lambda_nm, bool together,
-                     uint32_t events, bool sees_lights, uint32_t mask) {
+                     uint32_t events, bool sees_lights, bool sees_sky, uint32_t mask) {
     const ReferenceHit hit = scene.intersect(origin, direction, mask);
-    if (hit.object == no_index) return reference_environment(world, direction, lambda_nm);
+    if (hit.object == no_index) return sees_sky ? reference_environment(world, direction, lambda_nm) : Spectrum4{};
     Spectrum4 sum{};
     if (sees_lights && hit.light != no_index) {
       const LightRow& row = world.lights[hit.light];
@@ -69,7 +79,9 @@ struct Tracer {
       if (together && world.dielectric.dispersive[row] != 0) return disperse(hit, direction, lambda_nm, events);
       const reference::DielectricOptics optics{reference_spectrum(world, world.dielectric.eta[row], lambda_nm),
                                                world.dielectric.schlick[row] != 0, false};
-      return go_on(hit, frame, reference::sample_dielectric(wo, optics, random()), lambda_nm, together, events);
+      return branch(
+          hit, frame, [&](double u) { return reference::sample_dielectric(wo, optics, u); }, lambda_nm, together,
+          events);
     }
     if (kind == ShadeKind::diffuse) {
       const Spectrum4 albedo = reference_spectrum(world, world.diffuse.reflectance[row], lambda_nm);
@@ -118,22 +130,64 @@ struct Tracer {
   template <class Evaluate>
   Spectrum4 direct(const ReferenceHit& hit, const LocalFrame& frame, const Spectrum4& lambda_nm,
                    const Evaluate& evaluate) {
-    uint32_t light = 0;
-    const ReferenceLightPoint sample = reference_light(world, hit.position, random, &light);
+    Spectrum4 sum{};
+    for (const uint32_t light : summed) sum = plus(sum, light_from(hit, frame, lambda_nm, evaluate, light, 1));
+    if (!chosen.empty()) {
+      const size_t place = std::min(static_cast<size_t>(random() * double(chosen.size())), chosen.size() - 1);
+      sum = plus(sum, light_from(hit, frame, lambda_nm, evaluate, chosen[place], double(chosen.size())));
+    }
+    if (!world.settings.shadows) sum = plus(sum, sky_through_everything(frame, lambda_nm, evaluate));
+    return sum;
+  }
+
+  template <class Evaluate>
+  Spectrum4 light_from(const ReferenceHit& hit, const LocalFrame& frame, const Spectrum4& lambda_nm,
+                       const Evaluate& evaluate, uint32_t light, double count) {
+    const ReferenceLightPoint sample = reference_light_point(world.lights[light], hit.position, random);
     if (!(sample.factor > 0)) return {};
     const BsdfValue value = evaluate(frame.in(sample.direction));
     const double far = std::isinf(sample.distance) ? infinity : sample.distance * (1 - 1e-6);
-    if (scene.intersect(hit.position, sample.direction, visible_to_shadows, far).object != no_index) return {};
+    if (world.settings.shadows &&
+        scene.intersect(hit.position, sample.direction, visible_to_shadows, far).object != no_index)
+      return {};
     Spectrum4 result = reference_radiance(world, world.lights[light], lambda_nm);
-    for (size_t j = 0; j < 4; ++j) result[j] *= value.f_cos[j] * sample.factor;
+    for (size_t j = 0; j < 4; ++j) result[j] *= value.f_cos[j] * sample.factor * count;
     return result;
+  }
+
+  template <class Evaluate>
+  Spectrum4 sky_through_everything(const LocalFrame& frame, const Spectrum4& lambda_nm, const Evaluate& evaluate) {
+    const Vector direction = reference_direction(random);
+    Spectrum4 result = reference_environment(world, direction, lambda_nm);
+    const BsdfValue value = evaluate(frame.in(direction));
+    for (size_t j = 0; j < 4; ++j) result[j] *= value.f_cos[j] * 4 * 3.14159265358979323846;
+    return result;
+  }
+
+  // A smooth boundary: one of its two lobes by chance, or without chance each that there is. `sample` reflects for
+  // small random numbers.
+  template <class Sample>
+  Spectrum4 branch(const ReferenceHit& hit, const LocalFrame& frame, const Sample& sample, const Spectrum4& lambda_nm,
+                   bool together, uint32_t events) {
+    if (is_path) return go_on(hit, frame, sample(random()), lambda_nm, together, events);
+    Spectrum4 sum{};
+    BsdfSample lobes[2] = {sample(0), sample(1 - 1e-15)};
+    const size_t count = lobes[0].transmitted == lobes[1].transmitted ? 1 : 2;
+    for (size_t lobe = 0; lobe < count; ++lobe) {
+      for (double& weight : lobes[lobe].weight) weight *= lobes[lobe].pdf;
+      sum = plus(sum, go_on(hit, frame, lobes[lobe], lambda_nm, together, events));
+    }
+    return sum;
   }
 
   Spectrum4 go_on(const ReferenceHit& hit, const LocalFrame& frame, const BsdfSample& sample,
                   const Spectrum4& lambda_nm, bool together, uint32_t events) {
     if (!(sample.pdf > 0)) return {};
-    Spectrum4 result =
-        radiance(hit.position, frame.out(sample.wi), lambda_nm, together, events - 1, sample.delta, visible_to_bounces);
+    if (sample.delta && world.settings.integrator == Integrator::local) return {};
+    // Where only the light sources light rough surfaces, the sky is the only one not sampled.
+    const uint32_t left = is_path || sample.delta ? events - 1 : 0;
+    Spectrum4 result = radiance(hit.position, frame.out(sample.wi), lambda_nm, together, left, sample.delta,
+                                sample.delta || world.settings.shadows, visible_to_bounces);
     for (size_t j = 0; j < 4; ++j) result[j] *= sample.weight[j];
     return result;
   }
@@ -173,7 +227,7 @@ struct Tracer {
       origin += read3(camera.lens_x) * u + read3(camera.lens_y) * v;
       direction = glm::normalize(focus - origin);
     }
-    return radiance(origin, direction, lambda_nm, true, world.settings.max_depth, true, visible_to_camera);
+    return radiance(origin, direction, lambda_nm, true, world.settings.max_depth, true, true, visible_to_camera);
   }
 
   std::array<double, 3> sample_xyz(uint32_t x, uint32_t y) {

@@ -1,8 +1,9 @@
-// The oracle: a plain scalar depth-first path tracer in double precision over the same frozen world, for the stream
-// pipeline to agree with. It shares with the pipeline the world's columns, the spectra's double-precision twins and the
-// scalar BSDFs of systems/bsdf/reference.h, and nothing else: brute-force intersection, its own random numbers, uniform
-// choice of lights, uniform areas, no multiple importance sampling (area lights by sampling them alone, the environment
-// by running into it alone), no roulette, uniform wavelengths, and a branch per wavelength where a path disperses.
+// The oracle: a plain scalar depth-first ray tracer in double precision over the same frozen world, by the integrator
+// of its settings, for the stream pipeline to agree with. It shares with the pipeline the world's columns, the
+// spectra's double-precision twins and the scalar BSDFs of systems/bsdf/reference.h, and nothing else: brute-force
+// intersection, its own random numbers, uniform choice of lights, uniform areas, no multiple importance sampling (area
+// lights by sampling them alone, the environment by running into it alone, without shadows by a uniform direction), no
+// roulette, no bound on what a branch carries, uniform wavelengths, and a branch per wavelength where a path disperses.
 #pragma once
 #include <array>
 #include <vector>

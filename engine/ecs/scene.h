@@ -1,5 +1,6 @@
 // A scene as its author made it: entities, and the heavy data their components refer to by handle.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -39,11 +40,21 @@ struct Filter {
   float sigma = 0.5f;                      // pixels; gaussian only
 };
 
+// Which light is followed (DESIGN.md, section 1). local: what the eye ray meets, lit by the light sources. recursive:
+// and ideal reflection and refraction. path: global illumination.
+enum class Integrator : uint32_t { local, recursive, path };
+inline constexpr std::array<std::string_view, 3> integrator_names = {"local", "recursive", "path"};
+constexpr std::string_view integrator_name(Integrator integrator) {
+  return integrator_names[static_cast<size_t>(integrator)];
+}
+
 struct RenderSettings {
   uint32_t width = 1280, height = 720;
   uint32_t samples_per_pixel = 64;
   uint32_t max_depth = 16;  // scattering events on a path: 0 shows emission only
   uint32_t seed = 0;
+  Integrator integrator = Integrator::path;
+  bool shadows = true;  // false: light sources shine through everything on what they light
   Filter filter;
   float sensor_scale = 1;    // exposure time times ISO / 100: multiplies what the film records
   float exposure_stops = 0;  // tone mapping only

@@ -53,6 +53,8 @@ struct DielectricColumns {
 
 // A light that can be chosen: one triangle or quadric, a point, a direction, or the environment.
 enum class LightShape : uint32_t { triangle, sphere, ellipsoid, disk, point, directional, environment };
+// Abstract lights have no extent: nothing runs into them, and one direction is all there is to sample.
+constexpr bool is_abstract(LightShape shape) { return shape == LightShape::point || shape == LightShape::directional; }
 struct LightRow {
   uint32_t shape = 0;  // LightShape
   uint32_t spectrum = 0;
@@ -108,12 +110,14 @@ struct World {
   ConductorColumns conductor;
   DielectricColumns dielectric;
   Column<LightRow> lights;
-  Distribution1D light_choice;
+  Distribution1D light_choice;     // over the rows of lights that are sampled; empty where there is none
+  Column<uint32_t> summed_lights;  // rows of abstract lights that are summed one by one (local, recursive), not sampled
   Environment environment;
   CameraRow camera;
   SpectrumSet spectra;
   RenderSettings settings;
   PixelFilter filter;
+  uint32_t branches = 1;        // rays that leave one smooth surface at most: 2 where light is refracted, 5 dispersed
   bool needs_tangents = false;  // an anisotropic material is present
   bool has_instances = false;   // some triangles are in their object's space
   bool has_quadrics = false;

@@ -46,6 +46,9 @@ RenderSettings read_settings(const SceneContext& context, const Json::Value& val
   constexpr Range stops{-64, 64};
   settings.samples_per_pixel = object.integer("samples", 1, 1u << 30, settings.samples_per_pixel);
   settings.max_depth = object.integer("max_depth", 0, 1u << 16, settings.max_depth);
+  settings.integrator =
+      static_cast<Integrator>(object.choice("integrator", integrator_names, static_cast<size_t>(settings.integrator)));
+  settings.shadows = object.boolean("shadows", settings.shadows);
   settings.seed = object.integer("seed", 0, 0xffffffffu, settings.seed);
   settings.exposure_stops = object.number_f("exposure", stops, settings.exposure_stops);
   settings.sensor_scale = object.number_f("sensor_scale", positive, settings.sensor_scale);

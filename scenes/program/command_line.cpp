@@ -55,7 +55,7 @@ constexpr const char* info_footer = R"(Examples:
 
 // Flags as text, the way they were written.
 struct RenderTexts {
-  std::string samples_per_pixel, size, threads, tile, seed, max_depth, exposure;
+  std::string samples_per_pixel, size, threads, tile, seed, max_depth, exposure, integrator;
   LookTexts look;
 };
 struct DevelopTexts {
@@ -79,6 +79,10 @@ void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
   option("--tile", texts.tile, "N", "Side of a tile in pixels, 32 if not given; changes no pixel");
   option("--seed", texts.seed, "N", "Another seed, another noise");
   option("--max-depth", texts.max_depth, "N", "Scattering events on a path; 0 shows only what emits");
+  option("--integrator", texts.integrator, "NAME",
+         "Which light is followed: local (straight from the light sources to rough surfaces), recursive (also by "
+         "ideal reflection and refraction), path (all of it)");
+  render->add_flag("--no-shadows", arguments.overrides.no_shadows, "Light sources shine through everything");
   option("--exposure", texts.exposure, "STOPS", "Brightens the PNG by powers of 2; the EXR stays as it is");
   add_look_flags(*render, texts.look);
   option("--stats", arguments.stats, "STATS.json", "Write times, rays and memory there");
@@ -166,6 +170,9 @@ SceneOverrides parse_overrides(const CLI::App& render, const RenderTexts& texts,
     overrides.samples_per_pixel = parse_count("--spp", texts.samples_per_pixel, 1, max_samples_per_pixel, mistakes);
   if (given("--max-depth"))
     overrides.max_depth = parse_count("--max-depth", texts.max_depth, 0, deepest_path, mistakes);
+  if (given("--integrator"))
+    if (const auto place = parse_name("--integrator", texts.integrator, integrator_names, mistakes))
+      overrides.integrator = static_cast<Integrator>(*place);
   if (given("--seed")) overrides.seed = parse_count("--seed", texts.seed, 0, 0xffffffffu, mistakes);
   if (given("--exposure"))
     overrides.exposure_stops = parse_real("--exposure", texts.exposure, -largest_exposure, largest_exposure, mistakes);

@@ -14,6 +14,8 @@ struct SceneOverrides {
   std::optional<uint32_t> width, height;  // pixels; both or neither
   std::optional<uint32_t> samples_per_pixel, max_depth, seed;
   std::optional<float> exposure_stops;
+  std::optional<Integrator> integrator;
+  bool no_shadows = false;  // false: what the scene says
 };
 
 struct RenderArguments {

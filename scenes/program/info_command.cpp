@@ -119,6 +119,7 @@ void print_table(const SceneInfo& info, const std::string& path) {
   fmt::print("{}\n", path);
   row("frame", fmt::format("{}x{}, {} samples per pixel, max depth {}, seed {}", s.width, s.height, s.samples_per_pixel,
                            s.max_depth, s.seed));
+  row("integrator", fmt::format("{}{}", integrator_name(s.integrator), s.shadows ? "" : ", without shadows"));
   row("entities", fmt::format("{}", info.entities));
   row("components", listed(info.components));
   row("shapes", listed(info.shapes) + fmt::format("; {} distinct meshes", info.meshes));
@@ -161,6 +162,8 @@ void print_json(const SceneInfo& info, const std::string& path, const LoadedScen
   json["samples_per_pixel"] = info.settings.samples_per_pixel;
   json["max_depth"] = info.settings.max_depth;
   json["seed"] = info.settings.seed;
+  json["integrator"] = std::string(integrator_name(info.settings.integrator));
+  json["shadows"] = info.settings.shadows;
   json["entities"] = static_cast<Json::UInt64>(info.entities);
   json["components"] = to_json(info.components);
   json["shapes"] = to_json(info.shapes);

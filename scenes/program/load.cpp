@@ -33,6 +33,8 @@ void apply(const SceneOverrides& overrides, RenderSettings& settings) {
   settings.height = overrides.height.value_or(settings.height);
   settings.samples_per_pixel = overrides.samples_per_pixel.value_or(settings.samples_per_pixel);
   settings.max_depth = overrides.max_depth.value_or(settings.max_depth);
+  settings.integrator = overrides.integrator.value_or(settings.integrator);
+  settings.shadows = settings.shadows && !overrides.no_shadows;
   settings.seed = overrides.seed.value_or(settings.seed);
   settings.exposure_stops = overrides.exposure_stops.value_or(settings.exposure_stops);
 }

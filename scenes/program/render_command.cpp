@@ -42,6 +42,8 @@ WriteSettings write_settings(const RenderArguments& arguments, const Outputs& ou
   write.header.seed = settings.seed;
   write.header.settings = {{"samples_per_pixel", std::to_string(settings.samples_per_pixel)},
                            {"max_depth", std::to_string(settings.max_depth)},
+                           {"integrator", std::string(integrator_name(settings.integrator))},
+                           {"shadows", settings.shadows ? "true" : "false"},
                            {"filter", std::string(filter_name(settings.filter.kind))},
                            {exposure_setting, fmt::format("{}", settings.exposure_stops)}};
   write.look = arguments.look;

@@ -11,8 +11,8 @@ namespace metamer {
 namespace {
 
 // In the order of SystemId.
-constexpr std::array system_names = {"camera_rays",  "intersect", "sort",   "surface",  "emission",
-                                     "light_sample", "shade",     "shadow", "roulette", "accumulate"};
+constexpr std::array system_names = {"camera_rays", "intersect", "sort",     "surface", "emission",  "light_sample",
+                                     "shade",       "shadow",    "roulette", "nodes",   "accumulate"};
 static_assert(system_names.size() == system_count);
 
 double ratio(double a, double b) { return b > 0 ? a / b : 0; }
@@ -29,6 +29,8 @@ Json::Value to_json(const FrameReport& report) {
   json["height"] = report.settings.height;
   json["seed"] = report.settings.seed;
   json["max_depth"] = report.settings.max_depth;
+  json["integrator"] = std::string(integrator_name(report.settings.integrator));
+  json["shadows"] = report.settings.shadows;
   json["samples_per_pixel"] = report.settings.samples_per_pixel;
   json["fewest_samples_per_pixel"] = count(report.samples.fewest);
   json["most_samples_per_pixel"] = count(report.samples.most);

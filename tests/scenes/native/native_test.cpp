@@ -65,6 +65,8 @@ TEST(Native, ReadsEveryKey) {
   EXPECT_EQ(s.samples_per_pixel, 16u);
   EXPECT_EQ(s.max_depth, 5u);
   EXPECT_EQ(s.seed, 7u);
+  EXPECT_EQ(s.integrator, Integrator::recursive);
+  EXPECT_FALSE(s.shadows);
   EXPECT_EQ(s.filter.kind, FilterKind::gaussian);
   EXPECT_EQ(s.filter.radius_x, 2);
   EXPECT_EQ(s.filter.radius_y, 1.5f);

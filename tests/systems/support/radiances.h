@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "systems/dimensions.h"
 #include "tests/systems/support/scene_builder.h"
 
 namespace metamer {
@@ -17,50 +16,37 @@ struct PathRadiance {
   std::array<double, 4> lambda_nm{}, radiance{};
 };
 
-inline void trace_paths(const World& world, Batch& batch) {
-  double seconds = 0;
-  for (uint32_t depth = 0; depth <= world.settings.max_depth && batch.paths.size > 0; ++depth) {
-    (depth == 0 ? intersect_camera : intersect_bounce)(world, batch.paths, batch.hits, &seconds);
-    sort_hits(world, batch.paths.size, batch.hits, batch.order, batch.shade.groups);
-    batch.shade.size = batch.shade.groups.back().padded_end();
-    surface(world, batch.paths, batch.hits, batch.order, batch.shade);
-    emission(world, batch.shade, batch.slots);
-    if (depth == world.settings.max_depth) return;
-    if (!world.lights.empty()) light_sample(world, depth, batch.shade);
-    batch.shadow.size = 0;
-    shade_diffuse(world, depth, batch.shade, batch.shadow);
-    shade_rough(world, depth, batch.shade, batch.shadow);
-    shade_rough_conductor(world, depth, batch.shade, batch.shadow);
-    shade_smooth_conductor(world, batch.shade);
-    shade_dielectric(world, depth, batch.shade);
-    shadow(world, batch.shadow, batch.slots, &seconds);
-    roulette(depth, batch.shade, batch.next);
-    std::swap(batch.paths, batch.next);
-  }
-}
-
-// Every sample of every pixel; the picture's sides are multiples of 4.
+// Every sample of every pixel, by the integrator of the scene; the picture's sides are multiples of 4.
 inline std::vector<PathRadiance> trace_radiances(const World& world) {
   const TileRect picture{0, 0, world.settings.width, world.settings.height};
   std::vector<RayPacket> packets;
   for (uint32_t sample = 0; sample < world.settings.samples_per_pixel; ++sample)
     for (uint32_t y = 0; y < picture.y1; y += 4)
       for (uint32_t x = 0; x < picture.x1; x += 4) packets.push_back({x, y, sample});
-  std::vector<PathRadiance> result;
+  const size_t step = rays_per_batch(world) / column_lanes, pixels = size_t{picture.x1} * picture.y1;
+  std::vector<PathRadiance> result(pixels * world.settings.samples_per_pixel);
   Batch batch;
-  constexpr size_t step = batch_capacity / column_lanes;
-  for (size_t first = 0; first < packets.size(); first += step) {
-    const size_t count = std::min(step, packets.size() - first);
-    camera_rays(world, {packets.data() + first, count}, picture, batch.paths, batch.slots);
-    trace_paths(world, batch);
-    for (uint32_t i = 0; i < batch.slots.size; ++i) {
-      PathRadiance path;
+  Counters counters;
+  // The nodes of a ray tree carry the wavelengths of their root, in another order where they parted.
+  const auto gather = [&](const Slots& slots) {
+    for (uint32_t i = 0; i < slots.size; ++i) {
+      PathRadiance& path = result[pixels * slots.sample[i] + slots.pixel[i]];
       for (size_t j = 0; j < 4; ++j) {
-        path.lambda_nm[j] = double{batch.slots.lambda_nm[j][i]};
-        path.radiance[j] = double{batch.slots.radiance[j][i]};
+        const double lambda_nm = double{slots.lambda_nm[j][i]};
+        if (slots.are_roots) path.lambda_nm[j] = lambda_nm;
+        for (size_t k = 0; k < 4; ++k)
+          if (path.lambda_nm[k] == lambda_nm) path.radiance[k] += double{slots.radiance[j][i]};
       }
-      result.push_back(path);
     }
+  };
+  for (size_t first = 0; first < packets.size(); first += step) {
+    camera_rays(world, {packets.data() + first, std::min(step, packets.size() - first)}, picture, batch.paths,
+                batch.slots);
+    uint32_t depth = 0;
+    do {
+      trace_rays(world, depth, batch, counters);
+      gather(batch.slots);
+    } while (pop_nodes(rays_per_batch(world), batch.nodes, &depth, batch.paths, batch.slots));
   }
   return result;
 }
