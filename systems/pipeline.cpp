@@ -170,7 +170,8 @@ void trace_rays(const World& world, uint32_t depth, Batch& batch, Counters& coun
 
 uint32_t rays_per_batch(const World& world) {
   const uint32_t branches = world.settings.integrator == Integrator::recursive ? world.branches : 1;
-  return batch_capacity / branches / column_lanes * column_lanes;
+  constexpr uint32_t packet = column_lanes;
+  return batch_capacity / branches / packet * packet;
 }
 
 void Counters::add(const Counters& other) {

@@ -197,8 +197,10 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     const Vec3 origin = gather(paths.origin, path), direction = gather(paths.direction, path);
     const VU kind = gather(world.objects.kind.data(), object);
     const MF quadric = hn::And(live, float_mask(hn::Ne(kind, splat_u(static_cast<uint32_t>(ShapeKind::mesh)))));
-    const bool any_quadric = world.has_quadrics && !hn::AllFalse(FloatTag(), quadric);
     const MF triangle = hn::AndNot(quadric, live);
+    // Lanes that are all dead count as quadrics where there are any: then there need be no triangle to look at.
+    const bool any_quadric =
+        world.has_quadrics && (!hn::AllFalse(FloatTag(), quadric) || hn::AllFalse(FloatTag(), triangle));
     Surface s;
     if (!any_quadric) {
       s = triangle_surface(world, origin, direction, object, primitive, triangle);

@@ -5,6 +5,7 @@
 #include <string>
 #include <variant>
 
+#include "engine/ecs/scene.h"
 #include "systems/write_frame.h"
 
 namespace metamer {

@@ -77,8 +77,9 @@ INSTANTIATE_TEST_SUITE_P(Library, ShippedScene, testing::ValuesIn(shipped_names(
   return name;
 });
 
-TEST(Library, HasTheFourScenesAndTheDefaultIsOneOfThem) {
-  EXPECT_EQ(shipped_names(), (std::vector<std::string>{"cornell-spectral", "metals", "prism", "still-life"}));
+TEST(Library, HasItsScenesAndTheDefaultIsOneOfThem) {
+  EXPECT_EQ(shipped_names(),
+            (std::vector<std::string>{"cornell-spectral", "metals", "prism", "still-life", "three-levels"}));
   EXPECT_TRUE(fs::exists(shipped_scene(default_scene_name))) << shipped_scene(default_scene_name);
 }
 

@@ -9,8 +9,9 @@ namespace metamer {
 namespace {
 
 // Every kind of material and light, in a picture whose sides are no multiples of anything.
-SceneBuilder everything() {
+SceneBuilder everything(Integrator integrator = Integrator::path) {
   SceneBuilder b(37, 29, 16, 8);
+  b.scene.settings.integrator = integrator;
   b.scene.settings.filter = {FilterKind::gaussian, 1.5f, 1.5f, 0.5f};
   b.scene.meshes.push_back(cube_mesh());
   b.add(rectangle(6, 6), b.diffuse(b.named("colorchecker.green")), moved(0, -1, 0) * turned(-90, 1, 0, 0));
@@ -32,22 +33,51 @@ SceneBuilder everything() {
 }
 
 TEST(Arrangement, ThreadsAndTilesDoNotChangeABit) {
-  const std::unique_ptr<World> world = everything().freeze();
-  const Film film = render_film(*world, {1, 32});
-  EXPECT_EQ(film.invalid_samples(), 0u);
-  EXPECT_TRUE(film == render_film(*world, {1, 32})) << "from run to run";
-  EXPECT_TRUE(film == render_film(*world, {2, 32})) << "two threads";
-  EXPECT_TRUE(film == render_film(*world, {1, 16})) << "tiles of 16";
-  EXPECT_TRUE(film == render_film(*world, {3, 64})) << "tiles of 64, three threads";
-  EXPECT_TRUE(film == render_film(*world, {1, 4})) << "tiles of 4";
-  EXPECT_TRUE(film == render_film(*everything().freeze(), {1, 32})) << "frozen again";
-  SceneBuilder other = everything();
-  other.scene.settings.seed = 1;
-  EXPECT_FALSE(film == render_film(*other.freeze(), {1, 32})) << "another seed";
+  for (const Integrator integrator : {Integrator::path, Integrator::recursive, Integrator::local}) {
+    SCOPED_TRACE(integrator_name(integrator));
+    const std::unique_ptr<World> world = everything(integrator).freeze();
+    const Film film = render_film(*world, {1, 32});
+    EXPECT_EQ(film.invalid_samples(), 0u);
+    EXPECT_TRUE(film == render_film(*world, {1, 32})) << "from run to run";
+    EXPECT_TRUE(film == render_film(*world, {2, 32})) << "two threads";
+    EXPECT_TRUE(film == render_film(*world, {1, 16})) << "tiles of 16";
+    EXPECT_TRUE(film == render_film(*world, {3, 64})) << "tiles of 64, three threads";
+    EXPECT_TRUE(film == render_film(*world, {1, 4})) << "tiles of 4";
+    EXPECT_TRUE(film == render_film(*everything(integrator).freeze(), {1, 32})) << "frozen again";
+    SceneBuilder other = everything(integrator);
+    other.scene.settings.seed = 1;
+    EXPECT_FALSE(film == render_film(*other.freeze(), {1, 32})) << "another seed";
+  }
 }
 
-TEST(Arrangement, ACropHoldsTheSamePixels) {
-  const std::unique_ptr<World> world = everything().freeze();
+// However many nodes wait at once, the film gets the same: here one packet's trees at a time against a batch's.
+TEST(Arrangement, BatchesOfNodesDoNotChangeABit) {
+  const std::unique_ptr<World> world = everything(Integrator::recursive).freeze();
+  Batch batch;
+  TileFilm all, one;
+  Counters counters;
+  Film at_once(37, 29), in_packets(37, 29);
+  trace_tile(*world, {0, 0, 37, 29}, 0, 4, batch, all, counters);
+  flush(at_once, all);
+  for (uint32_t y = 0; y < 29; y += 4)
+    for (uint32_t x = 0; x < 37; x += 4)
+      for (uint32_t sample = 0; sample < 4; ++sample) {
+        trace_tile(*world, {x, y, std::min(x + 4, 37u), std::min(y + 4, 29u)}, sample, sample + 1, batch, one,
+                   counters);
+        flush(in_packets, one);
+      }
+  EXPECT_TRUE(at_once == in_packets);
+  EXPECT_TRUE(batch.nodes.levels.empty());
+  EXPECT_EQ(batch.nodes.rays.size, 0u);
+}
+
+class ArrangementOf : public testing::TestWithParam<Integrator> {};
+INSTANTIATE_TEST_SUITE_P(Each, ArrangementOf,
+                         testing::Values(Integrator::local, Integrator::recursive, Integrator::path),
+                         [](const auto& tested) { return std::string(integrator_name(tested.param)); });
+
+TEST_P(ArrangementOf, ACropHoldsTheSamePixels) {
+  const std::unique_ptr<World> world = everything(GetParam()).freeze();
   const TileRect whole{0, 0, 37, 29};
   Batch batch;
   TileFilm film, crop;
@@ -71,8 +101,8 @@ void fill(Batch& batch, int byte) {
   std::memset(first, byte, static_cast<size_t>(last - first));
 }
 
-TEST(Arrangement, WhatLayInABatchBeforeDoesNotMatter) {
-  const std::unique_ptr<World> world = everything().freeze();
+TEST_P(ArrangementOf, WhatLayInABatchBeforeDoesNotMatter) {
+  const std::unique_ptr<World> world = everything(GetParam()).freeze();
   const TileRect rect{3, 2, 36, 27};
   Batch batch;
   TileFilm clean, dirty;
@@ -81,6 +111,7 @@ TEST(Arrangement, WhatLayInABatchBeforeDoesNotMatter) {
   // Bytes 0xff are NaN and the largest index, 0x7f a huge number and index, 0x80 tiny negative ones, 0 zeros.
   for (const int byte : {0xff, 0x7f, 0x80, 0x00}) {
     fill(batch, byte);
+    std::memset(batch.nodes.memory.data(), byte, batch.nodes.memory.bytes());
     trace_tile(*world, rect, 0, 5, batch, dirty, counters);
     ASSERT_EQ(dirty.sums().size(), clean.sums().size());
     EXPECT_EQ(std::memcmp(dirty.sums().data(), clean.sums().data(), clean.sums().size_bytes()), 0) << byte;
@@ -89,8 +120,8 @@ TEST(Arrangement, WhatLayInABatchBeforeDoesNotMatter) {
 }
 
 // The sums of samples [0, n) do not depend on how the range was cut.
-TEST(Arrangement, RangesOfSamplesAddUpExactly) {
-  const std::unique_ptr<World> world = everything().freeze();
+TEST_P(ArrangementOf, RangesOfSamplesAddUpExactly) {
+  const std::unique_ptr<World> world = everything(GetParam()).freeze();
   const TileRect rect{0, 0, 37, 29};
   Batch batch;
   TileFilm tile;
