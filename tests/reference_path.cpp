@@ -248,6 +248,11 @@ struct Tracer {
 
 }  // namespace
 
+std::array<double, 4> reference_pixel_radiance(const World& world, uint32_t x, uint32_t y,
+                                               const std::array<double, 4>& lambda_nm, uint32_t seed) {
+  return Tracer(world, seed).camera_radiance(x, y, lambda_nm);
+}
+
 std::vector<ReferencePixel> reference_path(const World& world, uint32_t samples_per_pixel, uint32_t seed) {
   Tracer tracer(world, seed);
   const uint32_t width = world.settings.width, height = world.settings.height;

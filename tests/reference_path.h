@@ -20,4 +20,8 @@ struct ReferencePixel {
 // Row by row from the top left; independent random samples, `seed` chooses them.
 std::vector<ReferencePixel> reference_path(const World& world, uint32_t samples_per_pixel, uint32_t seed);
 
+// Of one random camera ray of a pixel on four wavelengths of one's own, W m^-2 sr^-1 nm^-1.
+std::array<double, 4> reference_pixel_radiance(const World& world, uint32_t x, uint32_t y,
+                                               const std::array<double, 4>& lambda_nm, uint32_t seed);
+
 }  // namespace metamer

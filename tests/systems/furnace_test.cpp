@@ -8,10 +8,21 @@ namespace {
 
 constexpr uint32_t many_events = 400;
 
-SceneBuilder furnace(uint32_t samples_per_pixel, uint32_t max_depth) {
+SceneBuilder furnace(uint32_t samples_per_pixel, uint32_t max_depth, Integrator integrator = Integrator::path) {
   SceneBuilder b(16, 16, samples_per_pixel, max_depth);
+  b.scene.settings.integrator = integrator;
   b.light(LightKind::environment, unit_spectrum, 1);
   b.look_at({0, 0, 3}, {0, 0, 0}, perspective(30));
+  return b;
+}
+// What meets the light at once is the same at all levels; what mirrors or refracts, at the upper two.
+constexpr Integrator all_levels[] = {Integrator::local, Integrator::recursive, Integrator::path};
+constexpr Integrator upper_levels[] = {Integrator::recursive, Integrator::path};
+SceneBuilder plane_in_furnace(double theta, Integrator integrator) {
+  SceneBuilder b(16, 16, 1024, 2);
+  b.scene.settings.integrator = integrator;
+  b.light(LightKind::environment, unit_spectrum, 1);
+  b.look_at({std::sin(theta), 0, std::cos(theta)}, {0, 0, 0}, orthographic(1e-3f), {0, 1, 0});
   return b;
 }
 const auto one = [](double) { return 1.0; };
@@ -63,23 +74,29 @@ TEST(Furnace, AClosedSphereSumsItsReflections) {
 }
 
 TEST(Furnace, APerfectMirrorVanishesOnEveryPath) {
-  SceneBuilder b = furnace(8, many_events);
-  b.add(sphere(0.6f), b.conductor(b.constant(1), b.constant(1e8)), moved(-0.5, 0, 0));
-  b.add(sphere(0.6f), b.conductor(b.constant(1), b.constant(1e8)), moved(0.5, 0, 0.3));
-  expect_every_path(trace_radiances(*b.freeze()), one, 1e-5);
+  for (const Integrator integrator : upper_levels) {
+    SceneBuilder b = furnace(8, many_events, integrator);
+    b.add(sphere(0.6f), b.conductor(b.constant(1), b.constant(1e8)), moved(-0.5, 0, 0));
+    b.add(sphere(0.6f), b.conductor(b.constant(1), b.constant(1e8)), moved(0.5, 0, 0.3));
+    expect_every_path(trace_radiances(*b.freeze()), one, 1e-5);
+  }
 }
 
 TEST(Furnace, ALosslessGlassSphereVanishesOnEveryPath) {
-  SceneBuilder b = furnace(32, many_events);
-  b.add(sphere(1), b.dielectric(b.constant(1.5)));
-  expect_every_path(trace_radiances(*b.freeze()), one, 1e-4);
+  for (const Integrator integrator : upper_levels) {
+    SceneBuilder b = furnace(32, many_events, integrator);
+    b.add(sphere(1), b.dielectric(b.constant(1.5)));
+    expect_every_path(trace_radiances(*b.freeze()), one, 1e-4);
+  }
 }
 
 TEST(Furnace, ALosslessGlassCubeVanishesOnEveryPath) {
-  SceneBuilder b = furnace(32, many_events);
-  b.scene.meshes.push_back(cube_mesh());
-  b.add(mesh(0), b.dielectric(b.constant(1.5)), turned(30, 1, 0.5, 0.2));
-  expect_every_path(trace_radiances(*b.freeze()), one, 1e-4);
+  for (const Integrator integrator : upper_levels) {
+    SceneBuilder b = furnace(32, many_events, integrator);
+    b.scene.meshes.push_back(cube_mesh());
+    b.add(mesh(0), b.dielectric(b.constant(1.5)), turned(30, 1, 0.5, 0.2));
+    expect_every_path(trace_radiances(*b.freeze()), one, 1e-4);
+  }
 }
 
 TEST(Furnace, DispersingGlassVanishesOnEachWavelength) {
@@ -108,13 +125,14 @@ TEST(Furnace, LosslessRoughMetalShowsItsAlbedo) {
     const double albedo =
         integrate_rectangle(f_cos, 0, glm::radians(90.0), -glm::radians(180.0), glm::radians(180.0), 64);
     EXPECT_LT(albedo, 1);
-    SceneBuilder b(16, 16, 1024, 2);
-    b.light(LightKind::environment, unit_spectrum, 1);
-    b.look_at({std::sin(theta), 0, std::cos(theta)}, {0, 0, 0}, orthographic(1e-3f), {0, 1, 0});
-    b.add(rectangle(1, 1), b.conductor(b.constant(1), b.constant(1e8), alpha_x, alpha_y));
-    SCOPED_TRACE(testing::Message() << alpha_x << " " << alpha_y << " at " << degrees);
-    expect_mean(
-        trace_radiances(*b.freeze()), [&](double) { return albedo; }, 0.02);
+    for (const Integrator integrator : all_levels) {
+      SceneBuilder b = plane_in_furnace(theta, integrator);
+      b.add(rectangle(1, 1), b.conductor(b.constant(1), b.constant(1e8), alpha_x, alpha_y));
+      SCOPED_TRACE(testing::Message() << alpha_x << " " << alpha_y << " at " << degrees << ", "
+                                      << integrator_name(integrator));
+      expect_mean(
+          trace_radiances(*b.freeze()), [&](double) { return albedo; }, 0.02);
+    }
   }
 }
 
@@ -142,16 +160,16 @@ TEST(Furnace, RoughMatterShowsItsAlbedo) {
     const double glossy_albedo =
         integrate_rectangle(glossy, 0, glm::radians(90.0), -glm::radians(180.0), glm::radians(180.0), 64);
     const double diffuse = normalized ? 1 : glm::radians(180.0);
-    SceneBuilder b(16, 16, 1024, 2);
-    b.light(LightKind::environment, unit_spectrum, 1);
-    b.look_at({std::sin(theta), 0, std::cos(theta)}, {0, 0, 0}, orthographic(1e-3f), {0, 1, 0});
-    const std::vector<double> lambda_nm = {360, 830}, values = {0.1, 0.3};
-    const SpectrumId slope = b.scene.spectra.add_table(lambda_nm, values, Extend::constant).id;
-    b.add(rectangle(1, 1), b.rough(slope, b.constant(ks), shininess, normalized));
-    SCOPED_TRACE(testing::Message() << ks << " " << shininess << " at " << degrees
-                                    << (normalized ? " normalised" : ""));
-    expect_mean(
-        trace_radiances(*b.freeze()), [&](double nm) { return diffuse * kd(nm) + glossy_albedo; }, 0.02);
+    for (const Integrator integrator : all_levels) {
+      SceneBuilder b = plane_in_furnace(theta, integrator);
+      const std::vector<double> lambda_nm = {360, 830}, values = {0.1, 0.3};
+      const SpectrumId slope = b.scene.spectra.add_table(lambda_nm, values, Extend::constant).id;
+      b.add(rectangle(1, 1), b.rough(slope, b.constant(ks), shininess, normalized));
+      SCOPED_TRACE(testing::Message() << ks << " " << shininess << " at " << degrees
+                                      << (normalized ? " normalised, " : ", ") << integrator_name(integrator));
+      expect_mean(
+          trace_radiances(*b.freeze()), [&](double nm) { return diffuse * kd(nm) + glossy_albedo; }, 0.02);
+    }
   }
 }
 

@@ -168,6 +168,10 @@ TEST(NativeMistakes, NumbersOutOfRange) {
               AllOf(HasSubstr("'metamer' is the number 2; expected 1\n"),
                     HasSubstr("'size[0]' is the number 0; expected a whole number from 1"),
                     HasSubstr("'size[1]' is the number 1.5"), HasSubstr("'samples' is the number 0")));
+  EXPECT_THAT(
+      messages_of("{\"metamer\": 1, \"entities\": [], \"settings\": {\n\"integrator\": \"locl\",\n\"shadows\": 1}}"),
+      AllOf(HasSubstr("scene.json:2: error: 'integrator' is"), HasSubstr("did you mean 'local'?"),
+            HasSubstr("scene.json:3: error: 'shadows' is the number 1; expected")));
 }
 
 TEST(NativeMistakes, SpectraThatAreNone) {

@@ -101,6 +101,49 @@ TEST_F(RenderCommand, SeedsDepthsAndExposuresMakeADifferenceWhereTheyShould) {
   EXPECT_NE(plain.second, bright.second);
 }
 
+// What the scene says of the integrator and of shadows, and what the flags say, are in the file and in the picture.
+TEST_F(RenderCommand, TheIntegratorIsTheFlagsElseTheScenes) {
+  folder_.write("room.json", R"({
+    "metamer": 1,
+    "settings": {"size": [12, 8], "samples": 2, "integrator": "recursive"},
+    "entities": [
+      {"transform": {"look_at": {"from": [0, 1, 3], "to": [0, 0, 0]}}, "camera": {"type": "perspective"}},
+      {"transform": {"rotate": {"axis": [1, 0, 0], "degrees": -90}}, "geometry": {"type": "rectangle", "width": 9, "depth": 9}},
+      {"transform": {"translate": [0, 0.5, 0]}, "geometry": {"type": "sphere", "radius": 0.5},
+       "material": {"type": "dielectric", "eta": 1.5}},
+      {"transform": {"translate": [0, 2, 0]}, "light": {"type": "point", "intensity": 1}}
+    ]})");
+  struct Rendered {
+    Film film;
+    std::string integrator, shadows;
+  };
+  const auto render = [&](const Arguments& more) {
+    Arguments arguments = {"render", "room.json", "-q"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run(arguments).exit_code, 0);
+    Rendered result;
+    FrameHeader header;
+    EXPECT_EQ(read_film((folder() / "room.exr").string(), result.film, header), std::nullopt);
+    for (const auto& [name, value] : header.settings) {
+      if (name == "integrator") result.integrator = value;
+      if (name == "shadows") result.shadows = value;
+    }
+    return result;
+  };
+  const Rendered scene = render({}), same = render({"--integrator", "recursive"}),
+                 local = render({"--integrator", "local"}), path = render({"--integrator", "PATH"}),
+                 lit = render({"--no-shadows"});
+  EXPECT_EQ(scene.integrator, "recursive");
+  EXPECT_EQ(scene.shadows, "true");
+  EXPECT_TRUE(scene.film == same.film);
+  EXPECT_EQ(local.integrator, "local");
+  EXPECT_FALSE(scene.film == local.film);
+  EXPECT_EQ(path.integrator, "path");
+  EXPECT_FALSE(scene.film == path.film);
+  EXPECT_EQ(lit.shadows, "false");
+  EXPECT_FALSE(scene.film == lit.film);
+}
+
 TEST_F(RenderCommand, PreviewOnlyLeavesTheFilmOut) {
   ASSERT_EQ(run({"render", "small.json", "-q", "--preview-only"}).exit_code, 0);
   Film film;
