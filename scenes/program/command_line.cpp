@@ -56,6 +56,7 @@ constexpr const char* info_footer = R"(Examples:
 // Flags as text, the way they were written.
 struct RenderTexts {
   std::string samples_per_pixel, size, threads, tile, seed, max_depth, exposure, integrator;
+  bool no_shadows = false;
   LookTexts look;
 };
 struct DevelopTexts {
@@ -82,7 +83,7 @@ void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
   option("--integrator", texts.integrator, "NAME",
          "Which light is followed: local (straight from the light sources to rough surfaces), recursive (also by "
          "ideal reflection and refraction), path (all of it)");
-  render->add_flag("--no-shadows", "Light sources shine through everything");
+  render->add_flag("--no-shadows", texts.no_shadows, "Light sources shine through everything");
   option("--exposure", texts.exposure, "STOPS", "Brightens the PNG by powers of 2; the EXR stays as it is");
   add_look_flags(*render, texts.look);
   option("--stats", arguments.stats, "STATS.json", "Write times, rays and memory there");
@@ -170,7 +171,7 @@ SceneOverrides parse_overrides(const CLI::App& render, const RenderTexts& texts,
     overrides.samples_per_pixel = parse_count("--spp", texts.samples_per_pixel, 1, max_samples_per_pixel, mistakes);
   if (given("--max-depth"))
     overrides.max_depth = parse_count("--max-depth", texts.max_depth, 0, deepest_path, mistakes);
-  overrides.no_shadows = given("--no-shadows");
+  overrides.no_shadows = texts.no_shadows;
   if (given("--integrator"))
     if (const auto place = parse_name("--integrator", texts.integrator, integrator_names, mistakes))
       overrides.integrator = static_cast<Integrator>(*place);
