@@ -68,6 +68,17 @@ ColourMatrix display_matrix(ColorSpace display, const std::optional<Color3>& whi
   return rounded_matrix;
 }
 
+Color3 into_gamut(const Color3& rgb, ColorSpace display) {
+  const double least = std::min({rgb[0], rgb[1], rgb[2]});
+  if (least >= 0) return rgb;
+  const double Y = multiply(rgb_to_xyz(display), rgb)[1];
+  if (!(Y > 0)) return {0, 0, 0};
+  const double keep = Y / (Y - least);
+  Color3 mapped = {};
+  for (size_t i = 0; i < 3; ++i) mapped[i] = std::max(0.0, Y + keep * (rgb[i] - Y));
+  return mapped;
+}
+
 float automatic_exposure_stops(const Picture& picture, ColorSpace display) {
   constexpr double key = 0.18;
   const Color3& weights = rgb_to_xyz(display)[1];

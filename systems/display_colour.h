@@ -32,6 +32,10 @@ Color3 white_at(size_t index);
 // luminance; without, no adaptation. In double precision, rounded once.
 ColourMatrix display_matrix(ColorSpace display, const std::optional<Color3>& white, Adaptation adaptation);
 
+// What the display can show instead of a linear colour outside its gamut: that of the same luminance and hue (the line
+// to grey in linear light) at which the most negative component is 0. Black where luminance is not above 0.
+Color3 into_gamut(const Color3& rgb, ColorSpace display);
+
 // "bradford", "cat16", in the order of Adaptation.
 std::span<const std::string_view> adaptation_names();
 

@@ -40,6 +40,11 @@ std::array<double, 3> observer_value(Observer observer, double lambda_nm) {
           interpolate(table.matching[2], lambda_nm)};
 }
 
+WavelengthRange observer_range(Observer observer) {
+  const DataTable& data = require_embedded_data(files[static_cast<size_t>(observer)]);
+  return {data.at(0, 0), data.at(data.rows() - 1, 0)};
+}
+
 std::span<const std::string_view> observer_names() { return names; }
 
 std::string_view observer_name(Observer observer) { return names[static_cast<size_t>(observer)]; }

@@ -33,6 +33,12 @@ const ObserverTable& observer_table(Observer observer);
 // The three functions at lambda_nm, linear between table entries, zero outside 360..830.
 std::array<double, 3> observer_value(Observer observer, double lambda_nm);
 
+// First and last wavelength of its table.
+struct WavelengthRange {
+  double first_nm, last_nm;
+};
+WavelengthRange observer_range(Observer observer);
+
 // "cie1931", "cie1964", "cie2015-2", "cie2015-10", "stiles-burch1955".
 std::span<const std::string_view> observer_names();
 std::string_view observer_name(Observer observer);

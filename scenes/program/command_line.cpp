@@ -23,6 +23,7 @@ constexpr const char* main_footer = R"(Examples:
   metamer render                                   the default scene
   metamer render cornell-box/scene.pbrt --spp 64   writes cornell-box.exr and cornell-box.png here
   metamer develop cornell-box.exr -o look.png --tonemap agx --exposure auto
+  metamer match 500 -o match.png                   the amounts of three lamps that look like 500 nm
   metamer info kitchen.json
   metamer render --help                            all flags of a command
 
@@ -128,12 +129,19 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
 }
 
 std::string unknown_command(const std::string& word) {
-  return fmt::format("unknown command '{}'{}; there are render, develop and info", word,
-                     word.find('.') != std::string::npos ? fmt::format(" (did you mean 'metamer render {}'?)", word)
-                                                         : suggestion(word, {"render", "develop", "info"}));
+  return fmt::format("unknown command '{}'{}; there are render, develop, match, metamers and info", word,
+                     word.find('.') != std::string::npos
+                         ? fmt::format(" (did you mean 'metamer render {}'?)", word)
+                         : suggestion(word, {"render", "develop", "match", "metamers", "info"}));
 }
 
-const char* input_name(const CLI::App& command) { return command.get_name() == "develop" ? "IN.exr" : "SCENE"; }
+// The argument without a flag, and what it names.
+std::pair<const char*, const char*> input_of(const CLI::App& command) {
+  if (command.get_name() == "develop") return {"IN.exr", "film"};
+  if (command.get_name() == "match") return {"LIGHT", "light"};
+  if (command.get_name() == "metamers") return {"BASE", "reflectance"};
+  return {"SCENE", "scene"};
+}
 
 // What no flag, scene or command took. After an unknown flag other words are no mistakes of their own: any of them may
 // have been meant as its value.
@@ -155,8 +163,8 @@ void note_extras(const CLI::App& app, const CLI::App* command, Mistakes& mistake
     mistakes.push_back(unknown_command(unexpected));
   else
     mistakes.push_back(fmt::format("unexpected argument '{}': one {} at a time, and '{}' was named already", unexpected,
-                                   command->get_name() == "develop" ? "film" : "scene",
-                                   command->get_option(input_name(*command))->as<std::string>()));
+                                   input_of(*command).second,
+                                   command->get_option(input_of(*command).first)->as<std::string>()));
 }
 
 SceneOverrides parse_overrides(const CLI::App& render, const RenderTexts& texts, Mistakes& mistakes) {
@@ -231,6 +239,12 @@ Command parse_command_line(int argc, char** argv) {
   DevelopArguments develop_arguments;
   DevelopTexts develop_texts;
   add_develop(app, develop_arguments, develop_texts);
+  MatchArguments match_arguments;
+  ObserverTexts match_texts;
+  add_match(app, match_arguments, match_texts);
+  MetamersArguments metamers_arguments;
+  ObserverTexts metamers_texts;
+  add_metamers(app, metamers_arguments, metamers_texts);
   add_info(app, info_arguments);
   for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
   try {
@@ -253,12 +267,19 @@ Command parse_command_line(int argc, char** argv) {
     parse_render(*command, render_texts, render_arguments, mistakes);
   if (command != nullptr && command->get_name() == "develop")
     parse_develop(*command, develop_texts, develop_arguments, mistakes);
+  if (command != nullptr && command->get_name() == "match")
+    parse_match(*command, match_texts, match_arguments, mistakes);
+  if (command != nullptr && command->get_name() == "metamers")
+    parse_metamers(*command, metamers_texts, metamers_arguments, mistakes);
   fail_if_any(mistakes);
   if (wants_version) return ShowVersion{};
   if (command == nullptr)
-    throw Failure(exit_wrong_input, "a command was expected: render, develop or info (metamer --help says more)");
+    throw Failure(exit_wrong_input,
+                  "a command was expected: render, develop, match, metamers or info (metamer --help says more)");
   if (command->get_name() == "render") return render_arguments;
   if (command->get_name() == "develop") return develop_arguments;
+  if (command->get_name() == "match") return match_arguments;
+  if (command->get_name() == "metamers") return metamers_arguments;
   return info_arguments;
 }
 

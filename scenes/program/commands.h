@@ -12,6 +12,8 @@ inline constexpr const char* exposure_setting = "exposure_stops";
 // `program_start` is when main began.
 int run_render(const RenderArguments& arguments, std::chrono::steady_clock::time_point program_start);
 int run_develop(const DevelopArguments& arguments);
+int run_match(const MatchArguments& arguments);
+int run_metamers(const MetamersArguments& arguments);
 int run_info(const InfoArguments& arguments);
 int run_version();
 

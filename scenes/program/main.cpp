@@ -35,6 +35,8 @@ int run(const Command& command, std::chrono::steady_clock::time_point start) {
   if (const std::string error = apply_isa_environment(); !error.empty()) throw Failure(exit_wrong_input, error);
   if (const auto* render = std::get_if<RenderArguments>(&command)) return run_render(*render, start);
   if (const auto* develop_it = std::get_if<DevelopArguments>(&command)) return run_develop(*develop_it);
+  if (const auto* match = std::get_if<MatchArguments>(&command)) return run_match(*match);
+  if (const auto* metamers = std::get_if<MetamersArguments>(&command)) return run_metamers(*metamers);
   if (const auto* info = std::get_if<InfoArguments>(&command)) return run_info(*info);
   return run_version();
 }
