@@ -36,8 +36,8 @@ std::vector<Pair> pairs_in_the_scene() {
   EXPECT_EQ(spectra.size(), 8u);
   std::vector<Pair> pairs;
   for (const char* name : {"skin", "leaf", "flower", "grey"})
-    pairs.push_back({name,
-                     {table_of(spectra[std::string(name) + " square"]), table_of(spectra[std::string(name) + " disc"])}});
+    pairs.push_back(
+        {name, {table_of(spectra[std::string(name) + " square"]), table_of(spectra[std::string(name) + " disc"])}});
   return pairs;
 }
 
@@ -102,7 +102,8 @@ TEST(MetamersScene, ShowsNoDiscInDaylightAndOneUnderTheBulb) {
   const Picture xyz = develop(film, ColourMatrix{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
   for (const auto& [px, py] : {std::pair{-0.5, 0.52}, {0.5, 0.52}, {-0.5, -0.52}, {0.5, -0.52}}) {
     const auto differences = [&](double half) {
-      const Color3 disc = mean_around(xyz, half + px, py, 0, 0.16), square = mean_around(xyz, half + px, py, 0.31, 0.40);
+      const Color3 disc = mean_around(xyz, half + px, py, 0, 0.16),
+                   square = mean_around(xyz, half + px, py, 0.31, 0.40);
       double largest = 0;
       for (size_t c = 0; c < 3; ++c) largest = std::max(largest, std::fabs(disc[c] / square[c] - 1));
       return largest;

@@ -41,7 +41,8 @@ TEST_F(MatchCommand, OfAFileIsLinearInItsValues) {
   folder_.write("twice.spd", "500\t2\n600\t6\n\n700\t2\n");
   const std::string once = run({"match", "a.csv"}).out, twice = run({"match", "twice.spd"}).out;
   for (const char* lamp : {"red", "green", "blue"})
-    EXPECT_NEAR(printed_amount(twice, lamp), 2 * printed_amount(once, lamp), 1e-3 * std::abs(printed_amount(once, lamp)));
+    EXPECT_NEAR(printed_amount(twice, lamp), 2 * printed_amount(once, lamp),
+                1e-3 * std::abs(printed_amount(once, lamp)));
   EXPECT_THAT(once, HasSubstr("dominant wavelength"));
 }
 
@@ -84,9 +85,9 @@ TEST_F(MatchCommand, PaintsTwoHalvesAlikeAndTheLampsBelow) {
   EXPECT_EQ(left.r, right.r);
   EXPECT_EQ(left.g, right.g);
   EXPECT_EQ(left.b, right.b);
-  EXPECT_GT(left.g, 200);       // green and blue mixed
+  EXPECT_GT(left.g, 200);  // green and blue mixed
   EXPECT_GT(left.g, left.r + 50);
-  EXPECT_EQ(between.g, 0);      // the line between
+  EXPECT_EQ(between.g, 0);  // the line between
   const Pixel red_on_the_left = field.at(100, 388), green = field.at(330, 388), blue = field.at(380, 388);
   EXPECT_GT(red_on_the_left.r, red_on_the_left.g + 100);
   EXPECT_GT(green.g, green.r + 100);
@@ -106,7 +107,7 @@ TEST_F(MatchCommand, RefusesWhatIsNoLight) {
       {{"-5"}, "-5"},
       {{"750"}, "from 390 to 730 nm, where the observer stiles-burch1955 was measured"},
       {{"850", "--observer", "cie1931"}, "from 360 to 830 nm"},
-      {{"D56"}, "unknown spectrum 'D56' (did you mean 'D65'?)"},
+      {{"FL13"}, "unknown spectrum 'FL13' (did you mean 'FL1'?)"},
       {{"colorchecker.redd"}, "did you mean 'colorchecker.red'?"},
       {{"BK7"}, "refractive index"},
       {{"none.csv"}, "none.csv: error: cannot be opened"},
@@ -156,12 +157,13 @@ TEST_F(MetamersCommand, PrintsWhereTheyMatchAndWritesSpectraForAScene) {
 }
 
 TEST_F(MetamersCommand, RefusesWhatIsNoReflectance) {
-  const std::vector<std::pair<Arguments, std::string>> cases = {{{}, "a reflectance was expected"},
-                                                                {{"1.5"}, "from 0 to 1"},
-                                                                {{"D65"}, "a reflectance, 0 to 1, was expected"},
-                                                                {{"0.5", "--same", "D66"}, "did you mean 'D65'?"},
-                                                                {{"0.5", "--observer", "stiles-burch1955"}, "unknown"},
-                                                                {{"0.5", "-o", "none/a.json"}, "none/a.json"}};
+  const std::vector<std::pair<Arguments, std::string>> cases = {
+      {{}, "a reflectance was expected"},
+      {{"1.5"}, "from 0 to 1"},
+      {{"D65"}, "a reflectance, 0 to 1, was expected"},
+      {{"0.5", "--same", "D66"}, "unknown spectrum 'D66' (did you mean 'D65'?)"},
+      {{"0.5", "--observer", "stiles-burch1955"}, "unknown"},
+      {{"0.5", "-o", "none/a.json"}, "none/a.json"}};
   for (const auto& [arguments, words] : cases) {
     Arguments all = {"metamers"};
     all.insert(all.end(), arguments.begin(), arguments.end());
