@@ -11,9 +11,8 @@ HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
 namespace {
 
-// X = 683 integral of L xbar d(lambda), estimated by the mean over a path's wavelengths of L xbar / p. X, Y and Z
-// overwrite the first three columns of the radiances, which end here.
-void accumulate_kernel(const World& world, Slots& slots) {
+// X = 683 integral of L xbar d(lambda), estimated by the mean over a path's wavelengths of L xbar / p.
+void to_xyz(const World& world, const Slots& slots, const Columns<float, 3>& xyz) {
   const float* observer = observer_table(Observer::cie1931).columns.data();
   const VF scale = splat(static_cast<float>(luminous_efficacy / wavelengths_per_path) * world.settings.sensor_scale);
   for (size_t i = 0; i < slots.size; i += lane_count()) {
@@ -24,7 +23,7 @@ void accumulate_kernel(const World& world, Slots& slots) {
       const VF weight = hn::Mul(load(slots.radiance[j], i), load(slots.inv_pdf_nm[j], i));
       for (size_t c = 0; c < 3; ++c) sum[c] = hn::MulAdd(weight, matching[c], sum[c]);
     }
-    for (size_t c = 0; c < 3; ++c) store(hn::Mul(sum[c], scale), slots.radiance[c], i);
+    for (size_t c = 0; c < 3; ++c) store(hn::Mul(sum[c], scale), xyz[c], i);
   }
 }
 
@@ -35,14 +34,23 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace metamer {
 
-HWY_EXPORT(accumulate_kernel);
+HWY_EXPORT(to_xyz);
 
-void accumulate(const World& world, Slots& slots, TileFilm& film) {
-  HWY_DYNAMIC_DISPATCH(accumulate_kernel)(world, slots);
-  uint8_t live[batch_capacity];
-  for (uint32_t i = 0; i < slots.size; ++i) live[i] = slots.pixel[i] != dead_lane;
-  add_samples(film, {slots.pixel, slots.size}, {slots.sample, slots.size}, slots.radiance[0], slots.radiance[1],
-              slots.radiance[2], {live, slots.size});
+void accumulate(const World& world, const Slots& slots, TileFilm& film, SampleWeights weights) {
+  alignas(column_alignment) float X[batch_capacity], Y[batch_capacity], Z[batch_capacity];
+  HWY_DYNAMIC_DISPATCH(to_xyz)(world, slots, {X, Y, Z});
+  const std::span<const uint32_t> pixel(slots.pixel, slots.size);
+  uint8_t live[batch_capacity], recorded[batch_capacity];
+  for (uint32_t i = 0; i < slots.size; ++i) {
+    live[i] = slots.pixel[i] != dead_lane;
+    recorded[i] = is_recordable(X[i]) & is_recordable(Y[i]) & is_recordable(Z[i]);
+  }
+  add_samples(film, pixel, {slots.sample, slots.size}, X, Y, Z, {live, slots.size});
+  if (film.band_count() == 0) return;
+  const auto columns = [](const Columns<float, 4>& c) { return std::array<const float*, 4>{c[0], c[1], c[2], c[3]}; };
+  const BandSamples bands{columns(slots.lambda_nm), columns(slots.inv_pdf_nm), columns(slots.radiance),
+                          world.settings.sensor_scale, weights == SampleWeights::added};
+  add_band_samples(film, pixel, bands, {live, slots.size}, {recorded, slots.size});
 }
 
 }  // namespace metamer

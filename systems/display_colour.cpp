@@ -4,6 +4,7 @@
 #include <array>
 
 #include "engine/simd/portable_math.h"
+#include "engine/spectrum/band_weights.h"
 #include "engine/spectrum/sources.h"
 
 namespace metamer {
@@ -17,6 +18,11 @@ Color3 with_unit_luminance(Color3 xyz) {
   const double Y = xyz[1];
   for (double& v : xyz) v /= Y;
   return xyz;
+}
+
+Color3 seen_by(Observer observer, const Samples& light) {
+  const Matrix3 to_xyz = observer_to_xyz(observer, *cie_illuminant("D65"));
+  return with_unit_luminance(multiply(to_xyz, integrate_xyz(light, observer)));
 }
 
 std::array<float, 2> rounded(const std::array<double, 2>& xy) {
@@ -49,13 +55,13 @@ Chromaticities display_chromaticities(ColorSpace display) {
   return {primary(0), primary(1), primary(2), rounded(chromaticity(white_xyz(display)))};
 }
 
-Color3 white_of_temperature(double kelvin) {
-  return with_unit_luminance(integrate_xyz(kelvin < daylight_min_kelvin ? blackbody(kelvin) : daylight(kelvin)));
+Color3 white_of_temperature(double kelvin, Observer observer) {
+  return seen_by(observer, kelvin < daylight_min_kelvin ? blackbody(kelvin) : daylight(kelvin));
 }
 
-Color3 white_at(size_t index) {
+Color3 white_at(size_t index, Observer observer) {
   constexpr std::array<std::string_view, 3> illuminants = {"D65", "D50", "A"};
-  return with_unit_luminance(integrate_xyz(*cie_illuminant(illuminants[index])));
+  return seen_by(observer, *cie_illuminant(illuminants[index]));
 }
 
 ColourMatrix display_matrix(ColorSpace display, const std::optional<Color3>& white, Adaptation adaptation) {

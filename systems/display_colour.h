@@ -21,12 +21,12 @@ Chromaticities display_chromaticities(ColorSpace display);
 
 // XYZ with Y = 1 of the light of a correlated colour temperature: CIE daylight from 4000 K, below it a black body.
 inline constexpr double least_white_kelvin = 1000.0, most_white_kelvin = 25000.0;
-Color3 white_of_temperature(double kelvin);
+Color3 white_of_temperature(double kelvin, Observer observer = Observer::cie1931);
 
-// XYZ with Y = 1 of CIE illuminants D65, D50 and A, integrated with the 1 nm tables of 1931; `index` into
-// white_names(): "d65", "d50", "a".
+// XYZ with Y = 1 of CIE illuminants D65, D50 and A, integrated with the 1 nm tables; `index` into white_names(): "d65",
+// "d50", "a". What another observer than 1931's sees is led to XYZ by observer_to_xyz(), as pictures are.
 std::span<const std::string_view> white_names();
-Color3 white_at(size_t index);
+Color3 white_at(size_t index, Observer observer = Observer::cie1931);
 
 // XYZ to the display's linear colour. With `white` (XYZ, Y = 1) what has that colour becomes R = G = B of the same
 // luminance; without, no adaptation. In double precision, rounded once.

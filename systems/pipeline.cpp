@@ -125,7 +125,7 @@ void trace_batch(const World& world, std::span<const RayPacket> packets, const T
   do {
     trace_rays(world, depth, batch, counters);
     clock.restart();
-    accumulate(world, batch.slots, film);
+    accumulate(world, batch.slots, film, depth == 0 ? SampleWeights::added : SampleWeights::added_by_another_part);
     clock.charge(SystemId::accumulate);
   } while (pop_nodes(rays_per_batch(world), batch.nodes, &depth, batch.paths, batch.slots));
 }
@@ -188,7 +188,7 @@ void Counters::add(const Counters& other) {
 
 void trace_tile(const World& world, const TileRect& tile, uint32_t sample_begin, uint32_t sample_end, Batch& batch,
                 TileFilm& film, Counters& counters) {
-  film.reset(tile.x0, tile.y0, tile.width(), tile.height(), sample_begin, sample_end);
+  film.reset(tile.x0, tile.y0, tile.width(), tile.height(), sample_begin, sample_end, world.settings.band_count);
   constexpr uint32_t packets_per_batch = batch_capacity / column_lanes;
   std::array<RayPacket, packets_per_batch> packets;
   const uint32_t most = rays_per_batch(world) / column_lanes;

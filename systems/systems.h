@@ -102,7 +102,9 @@ void push_nodes(const ShadeStream& shade, const Slots& slots, uint32_t depth, Sh
                 NodeStack& nodes);
 bool pop_nodes(uint32_t most, NodeStack& nodes, uint32_t* depth, PathStream& paths, Slots& slots);
 
-// Radiances to XYZ, into the tile's exact sums.
-void accumulate(const World& world, Slots& slots, TileFilm& film);
+// Radiances to XYZ and to bands, into the tile's exact sums. Of a sample whose light comes in several parts, each with
+// slots of its own, one part brings the weights of its wavelengths, once.
+enum class SampleWeights : uint32_t { added, added_by_another_part };
+void accumulate(const World& world, const Slots& slots, TileFilm& film, SampleWeights weights = SampleWeights::added);
 
 }  // namespace metamer

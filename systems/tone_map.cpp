@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/schedule/workers.h"
+#include "engine/schedule/blocks.h"
 #include "systems/tone_job.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -134,31 +134,14 @@ ToneJob tone_job(const ToneSettings& settings) {
   return {static_cast<float>(power_of_two(stops)), settings.dither, settings.curve, tone_constants(settings.display)};
 }
 
-// Calls pixels(begin, end) for all of `count`, in blocks on several threads. Blocks begin at multiples of every vector.
-template <class Pixels>
-void for_blocks(size_t count, uint32_t threads, Pixels&& pixels) {
-  constexpr size_t block = size_t{1} << 16;
-  struct Context {
-    Pixels& pixels;
-    size_t count;
-  } context{pixels, count};
-  const size_t blocks = (count + block - 1) / block;
-  const size_t workers = std::min<size_t>(threads == 0 ? available_threads() : threads, blocks);
-  run_units(
-      static_cast<uint32_t>(workers), blocks, Cancellation(),
-      [](void* shared, uint32_t, size_t unit) {
-        const Context& c = *static_cast<Context*>(shared);
-        c.pixels(unit * block, std::min(c.count, (unit + 1) * block));
-      },
-      &context);
-}
+constexpr size_t pixels_per_block = size_t{1} << 16;
 
 }  // namespace
 
 CodedPicture tone_map(const Picture& picture, const ToneSettings& settings) {
   CodedPicture coded{picture.width, picture.height, Column<uint32_t>(picture.pixel_count())};
   const ToneJob job = tone_job(settings);
-  for_blocks(picture.pixel_count(), settings.threads, [&](size_t begin, size_t end) {
+  for_blocks(picture.pixel_count(), settings.threads, pixels_per_block, [&](size_t begin, size_t end) {
     HWY_DYNAMIC_DISPATCH(encode_pixels)(picture, job, begin, end, coded.codes.data());
   });
   return coded;
@@ -167,7 +150,7 @@ CodedPicture tone_map(const Picture& picture, const ToneSettings& settings) {
 void expose(Picture& picture, const ToneSettings& settings) {
   const ToneJob job = tone_job(settings);
   if (job.scale == 1 && job.curve == ToneCurve::linear) return;
-  for_blocks(picture.pixel_count(), settings.threads, [&](size_t begin, size_t end) {
+  for_blocks(picture.pixel_count(), settings.threads, pixels_per_block, [&](size_t begin, size_t end) {
     HWY_DYNAMIC_DISPATCH(expose_pixels)(picture, job, begin, end);
   });
 }

@@ -2,6 +2,7 @@
 
 #include "engine/files/icc_profile.h"
 #include "engine/files/png_file.h"
+#include "systems/develop_bands.h"
 #include "systems/display_colour.h"
 
 namespace metamer {
@@ -13,23 +14,33 @@ std::string profile_name(ColorSpace display) {
 
 }  // namespace
 
-Picture develop(const Film& film, const ColourMatrix& xyz_to_rgb) {
-  Picture picture{film.width(), film.height(), {}, {}, {}};
-  Column<float> X, Y, Z;
-  mean_xyz(film, X, Y, Z);
-  colour_match(xyz_to_rgb, X, Y, Z, picture.r, picture.g, picture.b);
+XyzPicture observe(const Film& film, Observer observer, uint32_t threads) {
+  if (observer != Observer::cie1931)
+    return integrate_bands(film, band_matrix(band_edges_nm(film.band_count()), observer), threads);
+  XyzPicture xyz{film.width(), film.height(), {}, {}, {}};
+  mean_xyz(film, xyz.X, xyz.Y, xyz.Z);
+  return xyz;
+}
+
+Picture develop(const XyzPicture& xyz, const ColourMatrix& xyz_to_rgb) {
+  Picture picture{xyz.width, xyz.height, {}, {}, {}};
+  colour_match(xyz_to_rgb, xyz.X, xyz.Y, xyz.Z, picture.r, picture.g, picture.b);
   return picture;
 }
 
-Developed develop(const Film& film, const Look& look) {
+Developed develop(const XyzPicture& xyz, const Look& look) {
   Developed developed;
-  developed.picture = develop(film, display_matrix(look.display, look.white, look.adaptation));
+  developed.picture = develop(xyz, display_matrix(look.display, look.white, look.adaptation));
   developed.tone.exposure_stops =
       look.exposure_stops ? *look.exposure_stops : automatic_exposure_stops(developed.picture, look.display);
   developed.tone.curve = look.curve;
   developed.tone.display = look.display;
   developed.tone.threads = look.threads;
   return developed;
+}
+
+Developed develop(const Film& film, const Look& look) {
+  return develop(observe(film, look.observer, look.threads), look);
 }
 
 FileError write_developed_png(const std::string& path, const Developed& developed, const std::string& software) {
@@ -54,8 +65,10 @@ FileError write_frame(const Film& film, const WriteSettings& settings) {
   if (!settings.exr_path.empty()) {
     FrameHeader header = settings.header;
     header.chromaticities = display_chromaticities(ColorSpace::srgb);
-    const Picture picture = develop(film, display_matrix(ColorSpace::srgb, std::nullopt, Adaptation::cat16));
-    note(write_exr(settings.exr_path, picture, header, sample_totals(film), settings.checkpoint ? &film : nullptr));
+    const Picture picture = develop(observe(film, Observer::cie1931, settings.look.threads),
+                                    display_matrix(ColorSpace::srgb, std::nullopt, Adaptation::cat16));
+    note(write_exr(settings.exr_path, picture, header, sample_totals(film), settings.checkpoint ? &film : nullptr,
+                   &film));
   }
   if (!settings.png_path.empty())
     note(write_developed_png(settings.png_path, develop(film, settings.look), settings.header.software));

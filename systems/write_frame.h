@@ -7,6 +7,7 @@
 #include "engine/film/film.h"
 #include "engine/film/picture.h"
 #include "engine/spectrum/color.h"
+#include "engine/spectrum/observers.h"
 #include "systems/colour_match.h"
 #include "systems/tone_map.h"
 
@@ -14,6 +15,7 @@ namespace metamer {
 
 // What a film should look like on a display. None of it changes the film.
 struct Look {
+  Observer observer = Observer::cie1931;  // another one needs a film with bands
   ColorSpace display = ColorSpace::srgb;
   std::optional<Color3> white;  // XYZ, Y = 1, of what shall be neutral; nothing: no adaptation
   Adaptation adaptation = Adaptation::cat16;
@@ -23,22 +25,28 @@ struct Look {
 };
 
 struct WriteSettings {
-  std::string exr_path;    // empty: none
-  std::string png_path;    // empty: none
-  FrameHeader header;      // of the EXR; its chromaticities are set to the display's
-  Look look;               // of the PNG; the EXR is linear sRGB, neither adapted nor exposed
+  std::string exr_path;  // empty: none
+  std::string png_path;  // empty: none
+  FrameHeader
+      header;  // of the EXR, which has the means of the film's bands; its chromaticities are set to the display's
+  Look look;   // of the PNG; the EXR is linear sRGB, neither adapted nor exposed
   bool checkpoint = true;  // the EXR holds the film too; false is --preview-only
 };
 
-// The film's means in linear colour, pixels without samples black; white of 1 cd/m^2 becomes R = G = B = 1 where the
-// matrix is a display's.
-Picture develop(const Film& film, const ColourMatrix& xyz_to_rgb);
+// The film as an observer sees it: its exact XYZ for cie1931, else the integral over its bands, which it must have.
+XyzPicture observe(const Film& film, Observer observer, uint32_t threads);
 
-// The film as the look has it: developed for its display and white; `tone` is what is left to do to it.
+// Means in linear colour, pixels without samples black; white of 1 cd/m^2 becomes R = G = B = 1 where the
+// matrix is a display's.
+Picture develop(const XyzPicture& xyz, const ColourMatrix& xyz_to_rgb);
+
+// XYZ, observed already, as the look has it: developed for its display and white; `tone` is what is left to do to it.
 struct Developed {
   Picture picture;
   ToneSettings tone;
 };
+Developed develop(const XyzPicture& xyz, const Look& look);
+// Observed by the look's observer.
 Developed develop(const Film& film, const Look& look);
 
 // Writes codes of the look's display, with a profile that names it. The whole file or nothing.

@@ -21,12 +21,14 @@
 #include <algorithm>
 #include <charconv>
 
+#include "engine/files/exr_bands.h"
+#include "engine/files/exr_header.h"
 #include "engine/schedule/workers.h"
 
 namespace metamer {
 namespace {
 
-constexpr const char* film_part = "film";
+constexpr const char* band_count_attribute = "bandCount";  // of the film; where it has none, no such attribute
 constexpr int film_layout_version = 1;
 constexpr int rows_per_block = 16;                 // what one ZIP block of the format holds
 constexpr int rows_per_read = 8 * rows_per_block;  // blocks that OpenEXR's threads unpack at one time
@@ -63,14 +65,17 @@ void describe(Imf::Header& exr, const FrameHeader& header) {
 }
 
 Imf::Header picture_header(const Picture& picture, const FrameHeader& header, const SampleTotals& samples,
-                           bool has_film) {
+                           bool has_film, const Film* spectral) {
   Imf::Header exr(static_cast<int>(picture.width), static_cast<int>(picture.height));
   exr.compression() = Imf::ZIP_COMPRESSION;
   for (const char* name : {"R", "G", "B"}) exr.channels().insert(name, Imf::Channel(Imf::FLOAT));
   describe(exr, header);
-  exr.insert("samples", Imf::IntAttribute(clamped_int(samples.most)));
-  exr.insert("samplesFewest", Imf::IntAttribute(clamped_int(samples.fewest)));
+  if (samples.most > 0) {
+    exr.insert("samples", Imf::IntAttribute(clamped_int(samples.most)));
+    exr.insert("samplesFewest", Imf::IntAttribute(clamped_int(samples.fewest)));
+  }
   exr.insert("checkpoint", Imf::StringAttribute(has_film ? "part 'film'" : "left out (preview only)"));
+  if (spectral != nullptr && spectral->band_count() > 0) describe_bands(exr, spectral->band_count());
   exr.setName("picture");
   exr.setType(Imf::SCANLINEIMAGE);
   return exr;
@@ -98,8 +103,19 @@ Imf::Header film_header(const Film& film, const FrameHeader& header) {
   for (const auto& [name, word] : film_channels()) exr.channels().insert(name, Imf::Channel(Imf::UINT));
   describe(exr, header);
   exr.insert("filmLayoutVersion", Imf::IntAttribute(film_layout_version));
+  if (film.band_count() > 0) exr.insert(band_count_attribute, Imf::IntAttribute(static_cast<int>(film.band_count())));
   exr.insert("invalidSamples", Imf::StringAttribute(std::to_string(film.invalid_samples())));
   exr.setName(film_part);
+  exr.setType(Imf::SCANLINEIMAGE);
+  return exr;
+}
+
+Imf::Header bands_header(const Film& film, const FrameHeader& header) {
+  Imf::Header exr(static_cast<int>(film.width()), static_cast<int>(film.height()));
+  exr.compression() = Imf::ZIP_COMPRESSION;
+  add_band_sum_channels(exr, film.band_count());
+  describe(exr, header);
+  exr.setName(bands_part);
   exr.setType(Imf::SCANLINEIMAGE);
   return exr;
 }
@@ -140,20 +156,6 @@ bool unpack(const uint32_t* words, PixelSums& sums, PixelCounts& counts) {
   return sound && counts.total() <= max_samples_per_pixel;
 }
 
-void write_picture(Imf::OutputPart part, const Picture& picture) {
-  const size_t y_stride = sizeof(float) * picture.width;
-  const auto slice = [&](const Column<float>& column) {
-    char* values = reinterpret_cast<char*>(const_cast<float*>(column.data()));  // only read when writing a file
-    return Imf::Slice(Imf::FLOAT, values, sizeof(float), y_stride);
-  };
-  Imf::FrameBuffer buffer;
-  buffer.insert("R", slice(picture.r));
-  buffer.insert("G", slice(picture.g));
-  buffer.insert("B", slice(picture.b));
-  part.setFrameBuffer(buffer);
-  part.writePixels(static_cast<int>(picture.height));
-}
-
 void write_film(Imf::OutputPart part, const Film& film) {
   std::vector<uint32_t> words(size_t{film.width()} * rows_per_block * words_per_pixel);
   for (uint32_t row = 0; row < film.height(); row += rows_per_block) {
@@ -166,34 +168,24 @@ void write_film(Imf::OutputPart part, const Film& film) {
   }
 }
 
-std::string text(const Imf::Header& exr, const std::string& name) {
-  const auto* attribute = exr.findTypedAttribute<Imf::StringAttribute>(name);
-  return attribute == nullptr ? "" : attribute->value();
-}
-
 bool parse_number(const std::string& digits, uint64_t& value) {
   const auto [end, failed] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   return failed == std::errc() && end == digits.data() + digits.size();
 }
 
-bool read_header(const Imf::Header& exr, FrameHeader& header) {
-  header = {};
-  header.software = text(exr, "software");
-  header.scene = text(exr, "scene");
-  if (Imf::hasChromaticities(exr)) {
-    const Imf::Chromaticities& c = Imf::chromaticities(exr);
-    header.chromaticities = {{c.red.x, c.red.y}, {c.green.x, c.green.y}, {c.blue.x, c.blue.y}, {c.white.x, c.white.y}};
-  }
-  for (auto it = exr.begin(); it != exr.end(); ++it)
-    if (const std::string name = it.name(); name.starts_with(settings_prefix))
-      header.settings.emplace_back(name.substr(settings_prefix.size()), text(exr, name));
-  return parse_number(text(exr, "seed"), header.seed);
+int find_part(const Imf::MultiPartInputFile& file, const char* name) {
+  for (int part = 0; part < file.parts(); ++part)
+    if (file.header(part).hasName() && file.header(part).name() == name) return part;
+  return -1;
 }
 
-int find_film_part(const Imf::MultiPartInputFile& file) {
-  for (int part = 0; part < file.parts(); ++part)
-    if (file.header(part).hasName() && file.header(part).name() == film_part) return part;
-  return -1;
+// How many bands the film has, 0 for none; -1 where their part is missing, of another size or cut short.
+int count_bands(const Imf::MultiPartInputFile& file, const Imf::Header& film) {
+  const auto* count = film.findTypedAttribute<Imf::IntAttribute>(band_count_attribute);
+  if (count == nullptr) return 0;
+  const int part = find_part(file, bands_part);
+  const bool is_whole = part >= 0 && file.header(part).dataWindow() == film.dataWindow() && file.partComplete(part);
+  return is_whole && count->value() > 0 && count->value() <= static_cast<int>(max_band_count) ? count->value() : -1;
 }
 
 FileError read_film_pixels(const std::string& path, Imf::InputPart part, Film& film) {
@@ -212,11 +204,11 @@ FileError read_film_pixels(const std::string& path, Imf::InputPart part, Film& f
   return std::nullopt;
 }
 
-FileError read_checkpoint(const std::string& path, Film& film, FrameHeader& header) {
+FileError read_checkpoint(const std::string& path, Film& film, FrameHeader& header, FilmBands bands) {
   const int threads = static_cast<int>(available_threads());
   if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
   Imf::MultiPartInputFile file(path.c_str(), threads);
-  const int number = find_film_part(file);
+  const int number = find_part(file, film_part);
   if (number < 0)
     return fmt::format(
         "{}: holds no film part, so it is a picture but not a checkpoint; metamer render writes the film unless "
@@ -234,34 +226,62 @@ FileError read_checkpoint(const std::string& path, Film& film, FrameHeader& head
         channel == nullptr || channel->type != Imf::UINT)
       return fmt::format("{}: its film has no UINT channel '{}'", path, name);
   if (!file.partComplete(number)) return fmt::format("{}: the film is incomplete, the file was cut short", path);
+  const int band_count = bands == FilmBands::left_out ? 0 : count_bands(file, exr);
+  if (band_count < 0) return fmt::format("{}: the bands of its film are missing or cut short", path);
   const int64_t columns = int64_t{window.max.x} + 1, rows = int64_t{window.max.y} + 1;
-  if (const FileError error = check_frame_size(static_cast<uint64_t>(columns), static_cast<uint64_t>(rows)))
+  if (const FileError error = check_frame_size(static_cast<uint64_t>(columns), static_cast<uint64_t>(rows),
+                                               static_cast<uint32_t>(band_count)))
     return fmt::format("{}: {}", path, *error);
-  Film read(static_cast<uint32_t>(columns), static_cast<uint32_t>(rows));
-  FrameHeader read_as;
-  uint64_t invalid_samples = 0;
-  if (!read_header(exr, read_as) || !parse_number(text(exr, "invalidSamples"), invalid_samples))
+  Film read(static_cast<uint32_t>(columns), static_cast<uint32_t>(rows), static_cast<uint32_t>(band_count));
+  uint64_t seed = 0, invalid_samples = 0;
+  if (!parse_number(exr_text(exr, "seed"), seed) || !parse_number(exr_text(exr, "invalidSamples"), invalid_samples))
     return fmt::format("{}: the film's seed or number of refused samples is missing", path);
   read.set_invalid_samples(invalid_samples);
   if (const FileError error = read_film_pixels(path, Imf::InputPart(file, number), read)) return error;
+  if (band_count > 0)
+    if (const auto error = read_band_sums(Imf::InputPart(file, find_part(file, bands_part)), read))
+      return fmt::format("{}: {}", path, *error);
   film = std::move(read);
-  header = std::move(read_as);
+  header = read_exr_header(exr);
   return std::nullopt;
 }
 
 }  // namespace
 
+std::string exr_text(const Imf::Header& exr, const std::string& name) {
+  const auto* attribute = exr.findTypedAttribute<Imf::StringAttribute>(name);
+  return attribute == nullptr ? "" : attribute->value();
+}
+
+FrameHeader read_exr_header(const Imf::Header& exr) {
+  FrameHeader header;
+  header.software = exr_text(exr, "software");
+  header.scene = exr_text(exr, "scene");
+  if (Imf::hasChromaticities(exr)) {
+    const Imf::Chromaticities& c = Imf::chromaticities(exr);
+    header.chromaticities = {{c.red.x, c.red.y}, {c.green.x, c.green.y}, {c.blue.x, c.blue.y}, {c.white.x, c.white.y}};
+  }
+  for (auto it = exr.begin(); it != exr.end(); ++it)
+    if (const std::string name = it.name(); name.starts_with(settings_prefix))
+      header.settings.emplace_back(name.substr(settings_prefix.size()), exr_text(exr, name));
+  if (uint64_t seed = 0; parse_number(exr_text(exr, "seed"), seed)) header.seed = seed;
+  return header;
+}
+
 FileError write_exr(const std::string& path, const Picture& picture, const FrameHeader& header,
-                    const SampleTotals& samples, const Film* checkpoint) {
+                    const SampleTotals& samples, const Film* checkpoint, const Film* spectral) {
   AtomicFile file;
   if (const FileError error = file.open(path)) return error;
   try {
-    std::vector<Imf::Header> parts = {picture_header(picture, header, samples, checkpoint != nullptr)};
+    std::vector<Imf::Header> parts = {picture_header(picture, header, samples, checkpoint != nullptr, spectral)};
+    const bool has_band_sums = checkpoint != nullptr && checkpoint->band_count() > 0;
+    if (has_band_sums) parts.push_back(bands_header(*checkpoint, header));
     if (checkpoint != nullptr) parts.push_back(film_header(*checkpoint, header));
     ExrStream stream(path, file);
     Imf::MultiPartOutputFile exr(stream, parts.data(), static_cast<int>(parts.size()));
-    write_picture(Imf::OutputPart(exr, 0), picture);
-    if (checkpoint != nullptr) write_film(Imf::OutputPart(exr, 1), *checkpoint);
+    write_picture(Imf::OutputPart(exr, 0), picture, spectral);
+    if (has_band_sums) write_band_sums(Imf::OutputPart(exr, 1), *checkpoint);
+    if (checkpoint != nullptr) write_film(Imf::OutputPart(exr, has_band_sums ? 2 : 1), *checkpoint);
   } catch (const std::exception& error) {
     const FileError cause = file.error();
     return cause ? cause : fmt::format("{}: writing failed: {}", path, error.what());
@@ -269,9 +289,9 @@ FileError write_exr(const std::string& path, const Picture& picture, const Frame
   return file.commit();
 }
 
-FileError read_film(const std::string& path, Film& film, FrameHeader& header) {
+FileError read_film(const std::string& path, Film& film, FrameHeader& header, FilmBands bands) {
   try {
-    return read_checkpoint(path, film, header);
+    return read_checkpoint(path, film, header, bands);
   } catch (const std::exception& error) {
     return fmt::format("{}: cannot be read: {}", path, error.what());
   }

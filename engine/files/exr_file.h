@@ -1,5 +1,6 @@
-// OpenEXR files, see docs/output.md. Part 0 is the picture that every viewer opens: 32-bit float R G B. The
-// part `film`, where there is one, holds the film's exact sums, which makes the file a checkpoint.
+// OpenEXR files, see docs/output.md. Part 0 is the picture that every viewer opens: 32-bit float R G B, with a channel
+// per band of a spectral film. The part `film`, where there is one, holds the film's exact sums, which makes the file a
+// checkpoint; those of its bands are in the part `bands`.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -21,14 +22,16 @@ struct FrameHeader {
   std::vector<std::pair<std::string, std::string>> settings;  // written as `metamer:<name>`, in any order
 };
 
-// Writes `picture`; where `checkpoint` is not null also the film it was developed from. Equal arguments give
-// equal bytes. `samples` goes into the header.
+// Writes `picture`; where `checkpoint` is not null also the film it was developed from, where `spectral` is not null
+// the means of that film's bands. Equal arguments give equal bytes. `samples` goes into the header unless it is of
+// none.
 FileError write_exr(const std::string& path, const Picture& picture, const FrameHeader& header,
-                    const SampleTotals& samples, const Film* checkpoint);
+                    const SampleTotals& samples, const Film* checkpoint, const Film* spectral = nullptr);
 
-// Reads the film out of a checkpoint, and the header with its settings in the order of their names. An error
-// where there is no film in the file, it is damaged, cut short or does not fit in memory; then `film` and
-// `header` are as they were.
-FileError read_film(const std::string& path, Film& film, FrameHeader& header);
+// Reads the film out of a checkpoint, and the header with its settings in the order of their names. The sums of its
+// bands, many times larger, can be left where they are: the film then has none. An error where there is no film in the
+// file, it is damaged, cut short or does not fit in memory; then `film` and `header` are as they were.
+enum class FilmBands { read, left_out };
+FileError read_film(const std::string& path, Film& film, FrameHeader& header, FilmBands bands = FilmBands::read);
 
 }  // namespace metamer

@@ -14,6 +14,7 @@
 #include <span>
 #include <string>
 
+#include "engine/film/bands.h"
 #include "engine/film/fixed_point.h"
 #include "engine/sampling/points.h"
 #include "engine/simd/column.h"
@@ -34,21 +35,25 @@ struct PixelCounts {
 inline constexpr size_t film_bytes_per_pixel = sizeof(PixelSums) + sizeof(PixelCounts);  // 192 + 16
 static_assert(film_bytes_per_pixel == 208);
 
-// Bytes that Film(width, height) holds; the largest number where they would not fit 64 bits.
-uint64_t film_bytes(uint64_t width, uint64_t height);
+// Bytes that Film(width, height, band_count) holds; the largest number where they would not fit 64 bits.
+uint64_t film_bytes(uint64_t width, uint64_t height, uint32_t band_count = 0);
 
 // What is wrong with a frame of this size, if anything: no pixels, sides above 2^20, or a film and its
 // developed picture larger than the memory now available. To be asked before the first ray.
-std::optional<std::string> check_frame_size(uint64_t width, uint64_t height);
+std::optional<std::string> check_frame_size(uint64_t width, uint64_t height, uint32_t band_count = 0);
+
+// The same of a spectral picture that is read from a file, and what it is developed into.
+std::optional<std::string> check_spectral_picture_size(uint64_t width, uint64_t height, uint64_t band_count);
 
 class Film {
  public:
   Film() = default;
-  // All sums and counts zero. Throws std::bad_alloc where memory is refused.
-  Film(uint32_t width, uint32_t height);
+  // All sums and counts zero; with bands if band_count is not 0. Throws std::bad_alloc where memory is refused.
+  Film(uint32_t width, uint32_t height, uint32_t band_count = 0);
 
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }
+  uint32_t band_count() const { return band_count_; }  // 0: no spectral film
   size_t pixel_count() const { return size_t{width_} * height_; }
 
   // Row by row from the top left. Not to be read while threads flush.
@@ -56,6 +61,9 @@ class Film {
   std::span<const PixelSums> sums() const { return {sums_.get(), pixel_count()}; }
   std::span<PixelCounts> counts() { return {counts_.get(), pixel_count()}; }
   std::span<const PixelCounts> counts() const { return {counts_.get(), pixel_count()}; }
+  // All bands of a pixel, then those of the next.
+  std::span<BandSum> bands() { return {bands_.get(), pixel_count() * band_count_}; }
+  std::span<const BandSum> bands() const { return {bands_.get(), pixel_count() * band_count_}; }
 
   // Samples refused because a channel was not a number, infinite, or beyond sample_limit.
   uint64_t invalid_samples() const { return invalid_samples_; }
@@ -69,8 +77,10 @@ class Film {
 
   uint32_t width_ = 0;
   uint32_t height_ = 0;
+  uint32_t band_count_ = 0;
   std::unique_ptr<PixelSums[], Free> sums_;
   std::unique_ptr<PixelCounts[], Free> counts_;
+  std::unique_ptr<BandSum[], Free> bands_;
   std::unique_ptr<std::atomic_flag[]> locks_;  // one per row of pixels, and one for invalid_samples_
   uint64_t invalid_samples_ = 0;
 };
@@ -79,8 +89,9 @@ class Film {
 // Owned by one thread, reused from unit to unit. A unit that was cancelled half-way is not flushed.
 class TileFilm {
  public:
-  // Pixels [x, x + width) by [y, y + height) of the film, sums zero.
-  void reset(uint32_t x, uint32_t y, uint32_t width, uint32_t height, uint32_t sample_begin, uint32_t sample_end);
+  // Pixels [x, x + width) by [y, y + height) of a film with that many bands, sums zero.
+  void reset(uint32_t x, uint32_t y, uint32_t width, uint32_t height, uint32_t sample_begin, uint32_t sample_end,
+             uint32_t band_count = 0);
 
   uint32_t x() const { return x_; }
   uint32_t y() const { return y_; }
@@ -89,14 +100,19 @@ class TileFilm {
   const PixelCounts& counts() const { return counts_; }  // of every pixel in it
   uint64_t invalid_samples() const { return invalid_samples_; }
   std::span<const PixelSums> sums() const { return sums_; }
-  size_t bytes() const { return sums_.bytes(); }
+  uint32_t band_count() const { return band_count_; }
+  std::span<const BandSum> bands() const { return bands_; }  // all of a pixel, then those of the next
+  size_t bytes() const { return sums_.bytes() + bands_.bytes(); }
 
  private:
   friend void add_samples(TileFilm& tile, std::span<const uint32_t> pixel, std::span<const uint32_t> sample,
                           const float* X, const float* Y, const float* Z, std::span<const uint8_t> live);
+  friend void add_band_samples(TileFilm& tile, std::span<const uint32_t> pixel, const struct BandSamples& samples,
+                               std::span<const uint8_t> live, std::span<const uint8_t> recorded);
 
-  uint32_t x_ = 0, y_ = 0, width_ = 0, height_ = 0;
+  uint32_t x_ = 0, y_ = 0, width_ = 0, height_ = 0, band_count_ = 0;
   Column<PixelSums> sums_;
+  Column<BandSum> bands_;
   PixelCounts counts_ = {};
   uint64_t invalid_samples_ = 0;
 };
@@ -108,6 +124,20 @@ class TileFilm {
 // not reach stops the program.
 void add_samples(TileFilm& tile, std::span<const uint32_t> pixel, std::span<const uint32_t> sample, const float* X,
                  const float* Y, const float* Z, std::span<const uint8_t> live = {});
+
+// What the wavelengths of samples add to the bands; columns as long as that of the pixels.
+struct BandSamples {
+  std::array<const float*, 4> lambda_nm, inv_pdf_nm, radiance;  // nm, nm (at most 2^14), W m^-2 sr^-1 nm^-1
+  float scale = 1;                                              // on the radiance
+  bool adds_weights = true;  // false: the weights of these samples have been added with another part of their light
+};
+
+// Adds w = inv_pdf_nm of each wavelength to the weights of its band, and L w to its radiances. Wavelengths outside the
+// bands add nothing. Rows with live[i] == 0 are skipped, of those with recorded[i] == 0 only the weights are added: the
+// sample counts as black. L w beyond band_sample_limit is left out and counted among the invalid samples. Stops the
+// program for a pixel outside the tile.
+void add_band_samples(TileFilm& tile, std::span<const uint32_t> pixel, const BandSamples& samples,
+                      std::span<const uint8_t> live, std::span<const uint8_t> recorded);
 
 // Adds the tile's sums and sample counts to the film, once per unit of work. Any threads may flush any tiles
 // at one time, overlapping ones too. Stops the program where the tile lies outside the film or a pixel would

@@ -35,20 +35,32 @@ uint64_t available_memory() {
 
 double gibibytes(uint64_t bytes) { return static_cast<double>(bytes) * 0x1p-30; }
 
-}  // namespace
-
-std::optional<std::string> check_frame_size(uint64_t width, uint64_t height) {
+std::optional<std::string> check_size(uint64_t width, uint64_t height, uint64_t bytes_per_pixel,
+                                      std::string_view what) {
   if (width == 0 || height == 0) return fmt::format("a frame of {}x{} has no pixels", width, height);
   if (width > largest_side || height > largest_side)
     return fmt::format("a frame of {}x{} is too large: a side has at most {} pixels", width, height, largest_side);
-  const uint64_t needed = film_bytes(width, height) + width * height * developed_bytes;
+  const uint64_t pixel_bytes = bytes_per_pixel + developed_bytes;
   const uint64_t available = available_memory();
-  if (needed > available)
+  // Two sides and a pixel's bytes: at most 2^40 times 2^20.
+  if (const uint64_t needed = width * height * pixel_bytes; needed > available)
     return fmt::format(
-        "a frame of {}x{} does not fit in memory: it needs {:.1f} GiB ({} bytes a pixel), {:.1f} GiB "
+        "a frame of {}x{}{} does not fit in memory: it needs {:.1f} GiB ({} bytes a pixel), {:.1f} GiB "
         "are available",
-        width, height, gibibytes(needed), film_bytes_per_pixel + developed_bytes, gibibytes(available));
+        width, height, what, gibibytes(needed), pixel_bytes, gibibytes(available));
   return std::nullopt;
+}
+
+std::string bands_text(uint64_t band_count) { return band_count > 0 ? fmt::format(" with {} bands", band_count) : ""; }
+
+}  // namespace
+
+std::optional<std::string> check_frame_size(uint64_t width, uint64_t height, uint32_t band_count) {
+  return check_size(width, height, film_bytes_per_pixel + band_count * sizeof(BandSum), bands_text(band_count));
+}
+
+std::optional<std::string> check_spectral_picture_size(uint64_t width, uint64_t height, uint64_t band_count) {
+  return check_size(width, height, band_count * sizeof(float), bands_text(band_count));
 }
 
 }  // namespace metamer

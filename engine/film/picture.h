@@ -3,10 +3,26 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "engine/simd/column.h"
 
 namespace metamer {
+
+// X Y Z, cd/m^2 as the CIE 1931 observer has it, row by row from the top left.
+struct XyzPicture {
+  uint32_t width = 0;
+  uint32_t height = 0;
+  Column<float> X, Y, Z;
+};
+
+// Mean radiances of bands, W m^-2 sr^-1 nm^-1, row by row from the top left.
+struct SpectralPicture {
+  uint32_t width = 0;
+  uint32_t height = 0;
+  std::vector<double> edges_nm;      // ascending, one more than bands
+  std::vector<Column<float>> bands;  // a column of all pixels each
+};
 
 // Linear R G B row by row from the top left; R = G = B = 1 is the display's white at 1 cd/m^2. Values outside
 // the display's gamut are negative and kept.

@@ -1,5 +1,9 @@
 #include "scenes/native/settings.h"
 
+#include <fmt/format.h>
+
+#include "engine/film/bands.h"
+
 namespace metamer {
 namespace {
 
@@ -27,6 +31,14 @@ Filter read_filter(const SceneContext& context, const Json::Value& value) {
   return filter;
 }
 
+// How many bands: true for the default, false for none, or their number.
+uint32_t read_band_count(const SceneContext& context, const Json::Value& value) {
+  if (value.isBool()) return value.asBool() ? default_band_count : 0;
+  if (value.isUInt() && value.asUInt() <= max_band_count) return value.asUInt();
+  context.reader.expected(value, "spectral", fmt::format("true, false or a number of bands up to {}", max_band_count));
+  return 0;
+}
+
 }  // namespace
 
 RenderSettings read_settings(const SceneContext& context, const Json::Value& value) {
@@ -52,6 +64,7 @@ RenderSettings read_settings(const SceneContext& context, const Json::Value& val
   settings.seed = object.integer("seed", 0, 0xffffffffu, settings.seed);
   settings.exposure_stops = object.number_f("exposure", stops, settings.exposure_stops);
   settings.sensor_scale = object.number_f("sensor_scale", positive, settings.sensor_scale);
+  if (const Json::Value* spectral = object.find("spectral")) settings.band_count = read_band_count(context, *spectral);
   if (const Json::Value* filter = object.find("filter")) settings.filter = read_filter(context, *filter);
   return settings;
 }

@@ -3,6 +3,7 @@
 
 #include <glm/matrix.hpp>
 
+#include "engine/film/bands.h"
 #include "scenes/pbrt/matrix.h"
 #include "scenes/pbrt/reader.h"
 
@@ -79,7 +80,16 @@ void default_camera(Reader& reader, Source source) {
 }
 
 void read_film(Reader& reader, std::string_view kind, Parameters& parameters) {
-  if (kind != "rgb") {
+  reader.scene.settings.band_count = 0;  // the last Film counts
+  if (kind == "spectral") {
+    const int buckets = parameters.integer("nbuckets", 16, 1);
+    const double from_nm = parameters.number("lambdamin", 360), to_nm = parameters.number("lambdamax", 830);
+    reader.scene.settings.band_count = std::min(static_cast<uint32_t>(buckets), max_band_count);
+    reader.messages.note_once(
+        "spectral film", parameters.source(),
+        fmt::format("{}: {} bands from {} to {} nm are recorded, not {} from {} to {} nm", parameters.what(),
+                    reader.scene.settings.band_count, band_min_nm, band_max_nm, buckets, from_nm, to_nm));
+  } else if (kind != "rgb") {
     parameters.ignore_the_rest();
     reader.messages.warning(
         parameters.source(),

@@ -38,15 +38,18 @@ what was rendered so far (exit code 1), a second one stops at once.
 Examples:
   metamer render cornell-box/scene.pbrt
   metamer render prism.json -o /tmp/prism.exr --size 1920x1080 --spp 1024
-  metamer render prism.json --size 320x180 --spp 16 --exposure +1.5 --stats prism-stats.json --quiet)";
+  metamer render prism.json --size 320x180 --spp 16 --exposure +1.5 --stats prism-stats.json --quiet
+  metamer render prism.json --spectral             with 36 bands, for other observers)";
 
 constexpr const char* develop_footer =
-    R"(IN.exr is what metamer render wrote, without --preview-only: its film holds the exact sums. A PNG is encoded for
-the display, with an ICC profile for all but srgb; an EXR stays linear and takes exposure and tone curve too. Without
---exposure a PNG takes that of the render, an EXR none.
+    R"(IN.exr is what metamer render wrote, or a spectral OpenEXR file of others (channels such as S0.550,000nm). The
+observer of 1931 takes the film's exact sums where the file has them, else its bands; other observers need bands. A PNG
+is encoded for the display, with an ICC profile for all but srgb; an EXR stays linear and takes exposure and tone curve
+too. Without --exposure a PNG takes that of the render, an EXR none.
 
 Examples:
   metamer develop cornell-box.exr -o cornell-box.png
+  metamer develop prism.exr -o prism.png --observer cie2015-10
   metamer develop lamp.exr -o lamp.png --white a --exposure auto --tonemap hable
   metamer develop lamp.exr -o lamp-2020.exr --display rec2020 --white 3200 --adaptation bradford)";
 
@@ -56,7 +59,7 @@ constexpr const char* info_footer = R"(Examples:
 
 // Flags as text, the way they were written.
 struct RenderTexts {
-  std::string samples_per_pixel, size, threads, tile, seed, max_depth, exposure, integrator;
+  std::string samples_per_pixel, size, threads, tile, seed, max_depth, spectral, exposure, integrator;
   bool no_shadows = false;
   LookTexts look;
 };
@@ -85,6 +88,8 @@ void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
          "Which light is followed: local (straight from the light sources to rough surfaces), recursive (also by "
          "ideal reflection and refraction), path (all of it)");
   render->add_flag("--no-shadows", texts.no_shadows, "Light sources shine through everything");
+  option("--spectral", texts.spectral, "[N]",
+         "Record the mean radiance of N bands from 380 to 740 nm too, 36 if N is not given; 0: none");
   option("--exposure", texts.exposure, "STOPS", "Brightens the PNG by powers of 2; the EXR stays as it is");
   add_look_flags(*render, texts.look);
   option("--stats", arguments.stats, "STATS.json", "Write times, rays and memory there");
@@ -95,7 +100,8 @@ void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
 void add_develop(CLI::App& app, DevelopArguments& arguments, DevelopTexts& texts) {
   CLI::App* develop = app.add_subcommand("develop", "Turn a rendered film into a picture again");
   develop->footer(develop_footer);
-  develop->add_option("IN.exr", arguments.input, "EXR with a film, as metamer render writes it")->type_name("");
+  develop->add_option("IN.exr", arguments.input, "EXR with a film, as metamer render writes it, or with bands")
+      ->type_name("");
   const auto option = [&](const std::string& name, std::string& value, const char* type, const std::string& text) {
     develop->add_option(name, value, text)->type_name(type)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   };
@@ -184,6 +190,8 @@ SceneOverrides parse_overrides(const CLI::App& render, const RenderTexts& texts,
     if (const auto place = parse_name("--integrator", texts.integrator, integrator_names, mistakes))
       overrides.integrator = static_cast<Integrator>(*place);
   if (given("--seed")) overrides.seed = parse_count("--seed", texts.seed, 0, 0xffffffffu, mistakes);
+  if (given("--spectral"))
+    overrides.band_count = parse_count("--spectral", texts.spectral, 0, max_band_count, mistakes);
   if (given("--exposure"))
     overrides.exposure_stops = parse_real("--exposure", texts.exposure, -largest_exposure, largest_exposure, mistakes);
   return overrides;
@@ -218,6 +226,20 @@ void parse_develop(const CLI::App& develop, const DevelopTexts& texts, DevelopAr
   if (arguments.output.empty()) mistakes.push_back("--output: the name of a .png or .exr file was expected");
 }
 
+// --spectral may stand alone: what follows it is its value only if it is a number. The words in reverse, as CLI11 wants
+// them.
+std::vector<std::string> reversed_words(int argc, char** argv) {
+  std::vector<std::string> words;
+  for (int i = argc - 1; i > 0; --i) {
+    std::string word = argv[i];
+    const bool has_number = !words.empty() && words.back().find_first_not_of("0123456789") == std::string::npos;
+    if (word == "--spectral" && (!has_number || words.back().empty()))
+      word = fmt::format("--spectral={}", default_band_count);
+    words.push_back(std::move(word));
+  }
+  return words;
+}
+
 void fail_if_any(const Mistakes& mistakes) {
   if (!mistakes.empty()) throw Failure(exit_wrong_input, fmt::format("{}", fmt::join(mistakes, "\n")));
 }
@@ -248,7 +270,7 @@ Command parse_command_line(int argc, char** argv) {
   add_info(app, info_arguments);
   for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
   try {
-    app.parse(argc, argv);
+    app.parse(reversed_words(argc, argv));
   } catch (const CLI::CallForHelp&) {
     return ShowText{app.help()};
   } catch (const CLI::ArgumentMismatch& error) {

@@ -14,7 +14,7 @@ namespace metamer {
 // Flags that replace what the scene says.
 struct SceneOverrides {
   std::optional<uint32_t> width, height;  // pixels; both or neither
-  std::optional<uint32_t> samples_per_pixel, max_depth, seed;
+  std::optional<uint32_t> samples_per_pixel, max_depth, seed, band_count;
   std::optional<float> exposure_stops;
   std::optional<Integrator> integrator;
   bool no_shadows = false;  // false: what the scene says

@@ -9,9 +9,11 @@
 #include <fstream>
 
 #include "engine/files/output_kind.h"
+#include "engine/files/spectral_exr.h"
 #include "scenes/program/commands.h"
 #include "scenes/program/failure.h"
 #include "scenes/program/signals.h"
+#include "systems/develop_bands.h"
 #include "systems/display_colour.h"
 #include "systems/write_frame.h"
 
@@ -42,7 +44,44 @@ void check_input(const std::string& path) {
   std::array<char, 4> begin = {};
   file.read(begin.data(), begin.size());
   if (begin != magic)
-    throw Failure(exit_wrong_input, path + ": is not an OpenEXR file; develop reads those that metamer render wrote");
+    throw Failure(exit_wrong_input, path +
+                                        ": is not an OpenEXR file; develop reads those that metamer render wrote, and "
+                                        "spectral ones of others");
+}
+
+// What there is to develop.
+struct Observed {
+  XyzPicture xyz;
+  FrameHeader header;
+  SampleTotals samples;  // none where only bands were read
+};
+
+Observed observe_film(const std::string& path, uint32_t threads) {
+  Film film;
+  Observed observed;
+  if (const FileError error = read_film(path, film, observed.header, FilmBands::left_out))
+    throw Failure(exit_wrong_input, *error);
+  observed.xyz = observe(film, Observer::cie1931, threads);
+  observed.samples = sample_totals(film);
+  return observed;
+}
+
+// The 1931 observer takes the film's exact sums where there are some; all others, and files without a film, the bands.
+Observed observe_file(const std::string& path, Observer observer, uint32_t threads) {
+  ExrContents contents;
+  if (const FileError error = look_into_exr(path, contents)) throw Failure(exit_wrong_input, *error);
+  if (observer == Observer::cie1931 && (contents.has_film || !contents.has_bands)) return observe_film(path, threads);
+  if (!contents.has_bands)
+    throw Failure(exit_wrong_input,
+                  fmt::format("{}: --observer {}: holds no bands, only what the cie1931 observer sees; metamer render "
+                              "--spectral records bands",
+                              path, observer_name(observer)));
+  SpectralPicture picture;
+  Observed observed;
+  if (const FileError error = read_spectral_picture(path, picture, observed.header))
+    throw Failure(exit_wrong_input, *error);
+  observed.xyz = integrate_bands(picture, band_matrix(picture.edges_nm, observer), threads);
+  return observed;
 }
 
 // What the frame was rendered with, if the file remembers.
@@ -76,6 +115,7 @@ void describe(FrameHeader& header, const Look& look, float exposure_stops) {
   header.software = "metamer " METAMER_VERSION;
   std::erase_if(header.settings, [](const auto& setting) { return setting.first == exposure_setting; });
   header.settings.emplace_back(exposure_setting, fmt::format("{}", exposure_stops));
+  header.settings.emplace_back("observer", observer_name(look.observer));
   header.settings.emplace_back("display", display_name(look.display));
   header.settings.emplace_back("white", white_text(look.white));
   if (look.white) header.settings.emplace_back("adaptation", adaptation_names()[static_cast<size_t>(look.adaptation)]);
@@ -88,17 +128,15 @@ int run_develop(const DevelopArguments& arguments) {
   const OutputKind kind = check_output(arguments);
   check_input(arguments.input);
   install_signal_handlers(cancellation);
-  Film film;
-  FrameHeader header;
-  if (const FileError error = read_film(arguments.input, film, header)) throw Failure(exit_wrong_input, *error);
-
+  const Observed observed = observe_file(arguments.input, arguments.look.observer, arguments.threads);
+  FrameHeader header = observed.header;
   const Look look = chosen_look(arguments, kind, header);
-  Developed developed = develop(film, look);
+  Developed developed = develop(observed.xyz, look);
   const float stops = developed.tone.exposure_stops;
   describe(header, look, stops);
-  const FileError error = kind == OutputKind::png ? write_developed_png(arguments.output, developed, header.software)
-                                                  : write_developed_exr(arguments.output, std::move(developed), header,
-                                                                        sample_totals(film));
+  const FileError error = kind == OutputKind::png
+                              ? write_developed_png(arguments.output, developed, header.software)
+                              : write_developed_exr(arguments.output, std::move(developed), header, observed.samples);
   if (error) throw Failure(exit_failed, *error);
   if (!arguments.quiet) {
     if (arguments.automatic_exposure) fmt::print(stderr, "metamer: exposure {:+.2f} stops\n", stops);

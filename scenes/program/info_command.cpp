@@ -98,7 +98,7 @@ SceneInfo gather(const LoadedScene& loaded, const BuiltWorld& built) {
   info.images = scene.images.size();
   info.memory = {{"scene", scene_bytes(scene)},
                  {"world", world_bytes(world)},
-                 {"film", film_bytes(scene.settings.width, scene.settings.height)},
+                 {"film", film_bytes(scene.settings.width, scene.settings.height, scene.settings.band_count)},
                  {"peak", peak_rss_bytes()}};
   info.load_seconds = loaded.seconds;
   info.build_seconds = built.seconds;
@@ -120,6 +120,7 @@ void print_table(const SceneInfo& info, const std::string& path) {
   row("frame", fmt::format("{}x{}, {} samples per pixel, max depth {}, seed {}", s.width, s.height, s.samples_per_pixel,
                            s.max_depth, s.seed));
   row("integrator", fmt::format("{}{}", integrator_name(s.integrator), s.shadows ? "" : ", without shadows"));
+  if (s.band_count > 0) row("film", fmt::format("{} bands from {} to {} nm", s.band_count, band_min_nm, band_max_nm));
   row("entities", fmt::format("{}", info.entities));
   row("components", listed(info.components));
   row("shapes", listed(info.shapes) + fmt::format("; {} distinct meshes", info.meshes));
@@ -164,6 +165,7 @@ void print_json(const SceneInfo& info, const std::string& path, const LoadedScen
   json["seed"] = info.settings.seed;
   json["integrator"] = std::string(integrator_name(info.settings.integrator));
   json["shadows"] = info.settings.shadows;
+  json["bands"] = info.settings.band_count;
   json["entities"] = static_cast<Json::UInt64>(info.entities);
   json["components"] = to_json(info.components);
   json["shapes"] = to_json(info.shapes);

@@ -36,6 +36,7 @@ void apply(const SceneOverrides& overrides, RenderSettings& settings) {
   settings.integrator = overrides.integrator.value_or(settings.integrator);
   settings.shadows = settings.shadows && !overrides.no_shadows;
   settings.seed = overrides.seed.value_or(settings.seed);
+  settings.band_count = overrides.band_count.value_or(settings.band_count);
   settings.exposure_stops = overrides.exposure_stops.value_or(settings.exposure_stops);
 }
 

@@ -11,18 +11,18 @@ namespace {
 std::string names_text(std::span<const std::string_view> names) { return fmt::format("{}", fmt::join(names, ", ")); }
 
 // d65, d50, a, none or kelvin, as 5600 or 5600K.
-std::optional<Color3> parse_white(const std::string& text, Mistakes& mistakes) {
+std::optional<Color3> parse_white(const std::string& text, Observer observer, Mistakes& mistakes) {
   const std::string word = in_lower_case(text);
   if (word == "none") return std::nullopt;
   const auto names = white_names();
   for (size_t i = 0; i < names.size(); ++i)
-    if (names[i] == word) return white_at(i);
+    if (names[i] == word) return white_at(i, observer);
   std::string_view digits = word;
   if (!digits.empty() && digits.back() == 'k') digits.remove_suffix(1);
   if (!digits.empty() && std::string_view("0123456789+-.").find(digits[0]) != std::string_view::npos) {
     const auto kelvin = parse_real("--white", digits, static_cast<float>(least_white_kelvin),
                                    static_cast<float>(most_white_kelvin), mistakes);
-    return kelvin ? std::optional(white_of_temperature(*kelvin)) : std::nullopt;
+    return kelvin ? std::optional(white_of_temperature(*kelvin, observer)) : std::nullopt;
   }
   const std::vector<std::string_view> all = {names[0], names[1], names[2], "none"};
   mistakes.push_back(fmt::format("--white: unknown white '{}'{}; there are {}, and a temperature in kelvin", text,
@@ -36,6 +36,8 @@ void add_look_flags(CLI::App& command, LookTexts& texts) {
   const auto option = [&](const char* name, std::string& value, const char* type, const std::string& text) {
     command.add_option(name, value, text)->type_name(type)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   };
+  option("--observer", texts.observer, "NAME",
+         "Whose eyes: " + names_text(observer_names()) + "; cie1931 if not given, others need the bands of --spectral");
   option("--display", texts.display, "NAME", names_text(display_names()) + "; srgb if not given");
   option("--white", texts.white, "WHITE",
          "What shall look neutral: d65, d50, a, a temperature such as 3200, or none (as recorded) if not given");
@@ -50,7 +52,10 @@ Look parse_look(const CLI::App& command, const LookTexts& texts, Mistakes& mista
   if (given("--display"))
     if (const auto index = parse_name("--display", texts.display, display_names(), mistakes))
       look.display = display_at(*index);
-  if (given("--white")) look.white = parse_white(texts.white, mistakes);
+  if (given("--observer"))
+    if (const auto index = parse_name("--observer", texts.observer, observer_names(), mistakes))
+      look.observer = static_cast<Observer>(*index);
+  if (given("--white")) look.white = parse_white(texts.white, look.observer, mistakes);
   if (given("--adaptation")) {
     if (const auto index = parse_name("--adaptation", texts.adaptation, adaptation_names(), mistakes))
       look.adaptation = static_cast<Adaptation>(*index);

@@ -8,9 +8,9 @@
 
 namespace metamer {
 
-// Flags as text, the way they were written. Without --display, --white, --adaptation or --tonemap the look's defaults.
+// Flags as text, the way they were written. Without --observer, --display, --white, --adaptation or --tonemap the look's defaults.
 struct LookTexts {
-  std::string display, white, adaptation, curve;
+  std::string observer, display, white, adaptation, curve;
 };
 
 void add_look_flags(CLI::App& command, LookTexts& texts);

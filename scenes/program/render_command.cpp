@@ -46,6 +46,7 @@ WriteSettings write_settings(const RenderArguments& arguments, const Outputs& ou
                            {"shadows", settings.shadows ? "true" : "false"},
                            {"filter", std::string(filter_name(settings.filter.kind))},
                            {exposure_setting, fmt::format("{}", settings.exposure_stops)}};
+  if (settings.band_count > 0) write.header.settings.emplace_back("spectral", std::to_string(settings.band_count));
   write.look = arguments.look;
   write.look.exposure_stops = settings.exposure_stops;
   write.look.threads = arguments.threads;
@@ -78,16 +79,25 @@ void tell_files(const Outputs& outputs) {
   if (!outputs.stats.empty()) fmt::print("stats {}\n", outputs.stats);
 }
 
-void refuse_frame_without_memory(uint32_t width, uint32_t height, const std::string& said_by) {
-  if (const std::optional<std::string> mistake = check_frame_size(width, height))
+void refuse_frame_without_memory(uint32_t width, uint32_t height, uint32_t band_count, const std::string& said_by) {
+  if (const std::optional<std::string> mistake = check_frame_size(width, height, band_count))
     throw Failure(exit_wrong_input, fmt::format("{}: {}", said_by, *mistake));
+}
+
+void refuse_observer_without_bands(Observer observer, uint32_t band_count) {
+  if (observer != Observer::cie1931 && band_count == 0)
+    throw Failure(exit_wrong_input,
+                  fmt::format("--observer {}: needs the bands of a spectral film, render with --spectral; without "
+                              "it the film records what cie1931 sees",
+                              observer_name(observer)));
 }
 
 // Reads and builds; what was read is given back before the first ray.
 std::unique_ptr<World> make_world(const RenderArguments& arguments, const std::string& path, FrameReport& report) {
   const LoadedScene loaded = load_scene(path, arguments.overrides, arguments.quiet);
   const RenderSettings& settings = loaded.scene.settings;
-  refuse_frame_without_memory(settings.width, settings.height, path);
+  refuse_frame_without_memory(settings.width, settings.height, settings.band_count, path);
+  refuse_observer_without_bands(arguments.look.observer, settings.band_count);
   BuiltWorld built = build_world(loaded, path, arguments.quiet);
   report.load_seconds = loaded.seconds;
   report.build_seconds = built.seconds;
@@ -115,7 +125,8 @@ int run_render(const RenderArguments& arguments, Clock::time_point program_start
   const Outputs outputs = choose_outputs(arguments, path);
   check_outputs(outputs, path);
   const SceneOverrides& overrides = arguments.overrides;
-  if (overrides.width && overrides.height) refuse_frame_without_memory(*overrides.width, *overrides.height, "--size");
+  if (overrides.width && overrides.height)
+    refuse_frame_without_memory(*overrides.width, *overrides.height, overrides.band_count.value_or(0), "--size");
   install_signal_handlers(cancellation);
 
   FrameReport report;
@@ -124,8 +135,8 @@ int run_render(const RenderArguments& arguments, Clock::time_point program_start
   const std::unique_ptr<World> world = make_world(arguments, path, report);
   report.settings = world->settings;
   report.world_bytes = world_bytes(*world);
-  report.film_bytes = film_bytes(world->settings.width, world->settings.height);
-  Film film(world->settings.width, world->settings.height);
+  report.film_bytes = film_bytes(world->settings.width, world->settings.height, world->settings.band_count);
+  Film film(world->settings.width, world->settings.height, world->settings.band_count);
   save_when_interrupted();
   trace(arguments, *world, film, report, program_start);
   if (report.samples.total == 0) throw Failure(exit_failed, "interrupted before the first pixel; nothing was written");

@@ -28,6 +28,7 @@ Json::Value to_json(const FrameReport& report) {
   json["width"] = report.settings.width;
   json["height"] = report.settings.height;
   json["seed"] = report.settings.seed;
+  json["bands"] = report.settings.band_count;
   json["max_depth"] = report.settings.max_depth;
   json["integrator"] = std::string(integrator_name(report.settings.integrator));
   json["shadows"] = report.settings.shadows;

@@ -46,7 +46,7 @@ Picture render_small(const std::string& name, uint32_t width, uint32_t height, u
     RenderProgress progress;
     EXPECT_EQ(render(*world, {}, cancellation, progress, film).counters.invalid_samples, 0u);
   }
-  return develop(film, ColourMatrix{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  return develop(observe(film, Observer::cie1931, 0), ColourMatrix{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
 }
 
 class ShippedScene : public testing::TestWithParam<std::string> {};

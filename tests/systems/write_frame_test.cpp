@@ -43,7 +43,7 @@ std::string bytes_of(const std::string& path) {
 
 TEST_F(WriteFrame, DevelopsMeansThroughTheMatrix) {
   const ColourMatrix swap = {{{0, 2, 0}, {0, 0, 1}, {-1, 0, 0}}};
-  const Picture picture = develop(small_film(), swap);
+  const Picture picture = develop(observe(small_film(), Observer::cie1931, 1), swap);
   EXPECT_EQ(picture.r[2], 2 * 3.5f);
   EXPECT_EQ(picture.g[2], 3.5f);
   EXPECT_EQ(picture.b[2], -3.5f);

@@ -83,7 +83,7 @@ TEST(PbrtSettings, FiltersHaveTheirOwnDefaults) {
 
 TEST(PbrtSettings, WhatIsUsedInsteadIsSaid) {
   const ReadScene read = read_settings(R"(Camera "spherical" "string mapping" "equalarea"
-Film "spectral" "integer nbuckets" 9 "integer xresolution" 12
+Film "gbuffer" "string coordinatesystem" "world" "integer xresolution" 12
 PixelFilter "mitchell" "float B" 0.3
 Sampler "zsobol" "string randomization" "none"
 Integrator "bdpt" "integer maxdepth" 3
@@ -98,7 +98,7 @@ Film "rgb" "float cropwindow" [0 1 0 1] "string sensor" "canon_eos_5d" "string f
       read.messages,
       testing::ElementsAre(
           "scene:1: warning: Camera \"spherical\" is not supported yet; a perspective camera of 90 degrees is used",
-          "scene:2: warning: Film \"spectral\" is not supported yet; its size and exposure are used, it records R G B",
+          "scene:2: warning: Film \"gbuffer\" is not supported yet; its size and exposure are used, it records R G B",
           "scene:3: warning: PixelFilter \"mitchell\" is not supported yet; gaussian of radius 1.5 and sigma 0.5 "
           "pixels is used",
           "scene:4: note: Sampler \"zsobol\": its sample count is used; the points are always Owen-scrambled Sobol "
@@ -113,6 +113,15 @@ Film "rgb" "float cropwindow" [0 1 0 1] "string sensor" "canon_eos_5d" "string f
           "scene:11: warning: pictures in the colour space 'rec2020' are not supported yet; sRGB's primaries are "
           "used"));
   EXPECT_EQ(read.scene.settings.max_depth, 3u);
+}
+
+TEST(PbrtSettings, ASpectralFilmRecordsAsManyBandsAsItHasBuckets) {
+  const ReadScene read = read_settings(R"(Film "spectral" "integer nbuckets" 9 "float lambdamin" 400)");
+  EXPECT_EQ(read.scene.settings.band_count, 9u);
+  EXPECT_THAT(read.messages, testing::ElementsAre("scene:1: note: Film \"spectral\": 9 bands from 380 to 740 nm are "
+                                                  "recorded, not 9 from 400 to 830 nm"));
+  EXPECT_EQ(read_settings("Film \"spectral\"").scene.settings.band_count, 16u);
+  EXPECT_EQ(read_settings("Film \"spectral\"\nFilm \"rgb\"").scene.settings.band_count, 0u);
 }
 
 TEST(PbrtSettings, WithoutACameraThereIsPbrtsDefaultOne) {

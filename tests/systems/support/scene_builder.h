@@ -173,7 +173,7 @@ inline glm::dmat4 turned(double degrees, double x, double y, double z) {
 inline glm::dmat4 stretched(double x, double y, double z) { return glm::scale(glm::dmat4(1), glm::dvec3(x, y, z)); }
 
 inline Film render_film(const World& world, const RenderOptions& options = {2, 32}, RenderStats* stats = nullptr) {
-  Film film(world.settings.width, world.settings.height);
+  Film film(world.settings.width, world.settings.height, world.settings.band_count);
   Cancellation cancellation;
   RenderProgress progress;
   const RenderStats got = render(world, options, cancellation, progress, film);
