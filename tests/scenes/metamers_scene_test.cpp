@@ -99,7 +99,7 @@ TEST(MetamersScene, ShowsNoDiscInDaylightAndOneUnderTheBulb) {
   Film film(256, 136);
   RenderProgress progress;
   render(*world, {}, Cancellation(), progress, film);
-  const Picture xyz = develop(film, ColourMatrix{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  const Picture xyz = develop(observe(film, Observer::cie1931, 0), ColourMatrix{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
   for (const auto& [px, py] : {std::pair{-0.5, 0.52}, {0.5, 0.52}, {-0.5, -0.52}, {0.5, -0.52}}) {
     const auto differences = [&](double half) {
       const Color3 disc = mean_around(xyz, half + px, py, 0, 0.16),
