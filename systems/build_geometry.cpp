@@ -123,6 +123,17 @@ Mesh rectangle_mesh(const Geometry& geometry) {
   return mesh;
 }
 
+// The lights of the last object, those from its first_light on, if they state their power.
+void spread_power_of(Builder& b, Entity entity) {
+  const Light light = b.scene.registry.get<Light>(entity);
+  if (light.is_power == 0) return;
+  const size_t first = b.world.objects.first_light.back();
+  if (!spread_power(light, {b.world.lights.data() + first, b.world.lights.size() - first})) {
+    b.diagnostics.error(b.scene.location(entity),
+                        fmt::format("the area light {} has no area to emit its power from", b.scene.describe(entity)));
+  }
+}
+
 void add_mesh_object(Builder& b, Entity entity, const Geometry& geometry, const Mesh& mesh,
                      const glm::dmat4& to_world) {
   ObjectColumns& objects = b.world.objects;
@@ -156,6 +167,7 @@ void add_mesh_object(Builder& b, Entity entity, const Geometry& geometry, const 
     }
     b.world.lights.push_back(triangle_light(vertices, b.scene.registry.get<Light>(entity)));
   }
+  spread_power_of(b, entity);
 }
 
 void add_quadric_object(Builder& b, Entity entity, const Geometry& geometry, const glm::dmat4& to_world) {
@@ -170,6 +182,7 @@ void add_quadric_object(Builder& b, Entity entity, const Geometry& geometry, con
   const Light light = b.scene.registry.get<Light>(entity);
   b.world.lights.push_back(geometry.kind == ShapeKind::sphere ? sphere_light(to_world, geometry, light)
                                                               : disk_light(to_world, geometry, light));
+  spread_power_of(b, entity);
 }
 
 }  // namespace

@@ -10,26 +10,12 @@
 #include <unordered_map>
 
 #include "systems/freeze.h"
+#include "systems/light_rows.h"
 
 namespace metamer {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-
-LightRow light_at_infinity_or_point(const Light& light, const glm::dmat4& matrix) {
-  LightRow row;
-  row.spectrum = light.spectrum;
-  row.scale = light.scale;
-  glm::dvec3 p(matrix[3]);
-  row.shape = static_cast<uint32_t>(LightShape::point);
-  if (light.kind == LightKind::directional) {
-    row.shape = static_cast<uint32_t>(LightShape::directional);
-    p = glm::normalize(glm::dvec3(matrix[2]));  // light travels along -z: +z is towards it
-  }
-  if (light.kind == LightKind::environment) row.shape = static_cast<uint32_t>(LightShape::environment);
-  for (int i = 0; i < 3; ++i) row.p[i] = static_cast<float>(p[i]);
-  return row;
-}
 
 struct Box {
   glm::dvec3 lower{1e300}, upper{-1e300};
@@ -87,10 +73,13 @@ double scene_radius(const World& world) {
 double power_of(const World& world, const LightRow& row, double radius) {
   const double level = world.spectra.luminance(row.spectrum) * row.scale;
   switch (static_cast<LightShape>(row.shape)) {
-    case LightShape::point: return 4 * pi * level;
     case LightShape::directional: return pi * radius * radius * level;
+    case LightShape::distant_disk: {
+      const double half = row.axes[0];
+      return pi * half * (2 - half) * pi * radius * radius * level;
+    }
     case LightShape::environment: return 4 * pi * pi * radius * radius * level * world.environment.mean_luminance;
-    default: return pi * row.area * level * (row.two_sided != 0 ? 2 : 1);
+    default: return flux_per_unit(row) * level;
   }
 }
 
@@ -158,7 +147,9 @@ void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, Worl
       world.environment.light = static_cast<uint32_t>(world.lights.size());
       build_environment(light.image == no_index ? nullptr : &scene.images[light.image], matrix, world.environment);
     }
-    world.lights.push_back(light_at_infinity_or_point(light, matrix));
+    world.lights.push_back(abstract_light(matrix, light));
+    if (world.lights[world.lights.size() - 1].shape == static_cast<uint32_t>(LightShape::distant_disk))
+      world.distant_disks.push_back(static_cast<uint32_t>(world.lights.size() - 1));
   });
   if (world.lights.empty()) return;
   const double radius = scene_radius(world);
@@ -168,6 +159,7 @@ void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, Worl
   if (!(total > 0)) {
     // Nothing shines: without lights there is nothing to sample.
     world.lights.clear();
+    world.distant_disks.clear();
     world.environment = Environment{};
     for (uint32_t& light : world.objects.first_light) light = no_index;
     return;

@@ -41,6 +41,8 @@ void hit_emission(const World& world, const ShadeStream& shade, size_t i, Slots&
   VF lambda_nm[4], radiance[4];
   load(shade.lambda_nm, i, lambda_nm);
   light_spectrum(world, light, lambda_nm, radiance);
+  const VF profile = emission_profile(light, dot(wo, normal));
+  for (VF& value : radiance) value = hn::Mul(value, profile);
   const Vec3 from = mul_add(wo, distance, position);
   const VF pdf_light = area_light_pdf(light, from, position, normal, -wo, distance);
   add_radiance(seen, shade, i, radiance, weight_of(world, load(shade.pdf_direction, i), pdf_light), slots);
@@ -65,6 +67,20 @@ void miss_emission(const World& world, const ShadeStream& shade, size_t i, Slots
                weight_of(world, load(shade.pdf_direction, i), pdf_light), slots);
 }
 
+void disk_emission(const World& world, uint32_t row, const ShadeStream& shade, size_t i, Slots& slots) {
+  const LightFields light(world, hn::Set(IntTag(), static_cast<int>(row)));
+  // 1 - cos of the angle to the disc's centre.
+  const Vec3 off = -load(shade.wo, i) - light.vector(offsetof(LightRow, p));
+  const VF half = light.number(offsetof(LightRow, axes));
+  const MF seen = hn::And(is_live(load(shade.slot, i)), hn::Le(hn::Mul(splat(0.5f), dot(off, off)), half));
+  if (hn::AllFalse(FloatTag(), seen)) return;
+  VF lambda_nm[4], radiance[4];
+  load(shade.lambda_nm, i, lambda_nm);
+  light_spectrum(world, light, lambda_nm, radiance);
+  const VF pdf_light = hn::Mul(uniform_cone_pdf(half), light.number(offsetof(LightRow, choice_probability)));
+  add_radiance(seen, shade, i, radiance, weight_of(world, load(shade.pdf_direction, i), pdf_light), slots);
+}
+
 void emission_kernel(const World& world, const ShadeStream& shade, Slots& slots) {
   const size_t step = lane_count();
   const Group& miss = shade.groups[static_cast<size_t>(ShadeKind::miss)];
@@ -72,6 +88,8 @@ void emission_kernel(const World& world, const ShadeStream& shade, Slots& slots)
     for (size_t i = 0; i < miss.begin; i += step) hit_emission(world, shade, i, slots);
   if (world.environment.light != no_index)
     for (size_t i = miss.begin; i < miss.padded_end(); i += step) miss_emission(world, shade, i, slots);
+  for (const uint32_t row : world.distant_disks)
+    for (size_t i = miss.begin; i < miss.padded_end(); i += step) disk_emission(world, row, shade, i, slots);
 }
 
 }  // namespace

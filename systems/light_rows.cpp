@@ -1,5 +1,6 @@
 #include "systems/light_rows.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -19,6 +20,7 @@ LightRow row_of(LightShape shape, const Light& light) {
   row.spectrum = light.spectrum;
   row.scale = light.scale;
   row.two_sided = light.two_sided;
+  row.cosine_power = light.cosine_power;
   return row;
 }
 
@@ -41,6 +43,14 @@ double ellipsoid_area(const glm::dmat3& axes) {
   }
   return 4 * pi * sum / (rings * spokes);
 }
+
+// 2 sin^2 of half the angle: without cancellation for narrow cones.
+double one_minus_cos_deg(double degrees) {
+  const double s = sin(degrees * pi / 360);
+  return 2 * s * s;
+}
+// Where a spot's falloff starts at its edge: a width of 1 - cos that no two floats differ by.
+constexpr double sharpest_falloff = 1e-30;
 
 bool is_similarity(const glm::dmat3& m) {
   const double size = glm::dot(m[0], m[0]);
@@ -92,6 +102,49 @@ LightRow disk_light(const glm::dmat4& to_world, const Geometry& geometry, const 
   row.area = static_cast<float>(pi * glm::length(glm::cross(x, y)) * (1 - inner * inner));
   row.inner = static_cast<float>(inner);
   return row;
+}
+
+LightRow abstract_light(const glm::dmat4& to_world, const Light& light) {
+  const auto towards = [&] { return glm::normalize(glm::dvec3(to_world[2])); };  // light travels along -z
+  LightRow row = row_of(LightShape::point, light);
+  store(row.p, glm::dvec3(to_world[3]));
+  if (light.kind == LightKind::spot) {
+    const double cone = one_minus_cos_deg(double{light.cone_deg});
+    const double width = cone - one_minus_cos_deg(double{light.falloff_deg});
+    row.shape = static_cast<uint32_t>(LightShape::spot);
+    store(row.normal, -towards());
+    row.axes[0] = static_cast<float>(cone);
+    row.axes[1] = static_cast<float>(1 / std::max(width, sharpest_falloff));
+  } else if (light.kind == LightKind::directional) {
+    row.shape = static_cast<uint32_t>(LightShape::directional);
+    store(row.p, towards());
+    if (light.angular_diameter_deg > 0) {
+      // E = pi sin^2(half angle) L on a plane facing the disc.
+      const double half = one_minus_cos_deg(double{light.angular_diameter_deg} / 2);
+      row.shape = static_cast<uint32_t>(LightShape::distant_disk);
+      row.scale = static_cast<float>(light.scale / (pi * half * (2 - half)));
+      row.axes[0] = static_cast<float>(half);
+    }
+  } else if (light.kind == LightKind::environment) {
+    row.shape = static_cast<uint32_t>(LightShape::environment);
+  }
+  return row;
+}
+
+bool spread_power(const Light& light, std::span<LightRow> rows) {
+  double flux = 0;
+  for (const LightRow& row : rows) flux += flux_per_unit(row);
+  if (!(flux > 0)) return false;
+  for (LightRow& row : rows) row.scale = static_cast<float>(light.scale / flux);
+  return true;
+}
+
+double flux_per_unit(const LightRow& row) {
+  switch (static_cast<LightShape>(row.shape)) {
+    case LightShape::point: return 4 * pi;
+    case LightShape::spot: return pi * (2 * double{row.axes[0]} - 1 / double{row.axes[1]});
+    default: return 2 * pi * row.area / (double{row.cosine_power} + 2) * (row.two_sided != 0 ? 2 : 1);
+  }
 }
 
 }  // namespace metamer

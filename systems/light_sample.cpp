@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
 namespace {
 
-// A direction towards a light. pdf is per solid angle without the choice of the light; for point and directional
+// A direction towards a light. pdf is per solid angle without the choice of the light; for point, spot and directional
 // lights it is 0 and `weight` the irradiance per radiance unit they stand for (1 / d^2, 1).
 struct LightSample {
   Vec3 direction;
@@ -57,7 +57,7 @@ HWY_INLINE void sample_area(const LightFields& light, VU shape, const Vec3& from
   const MF two_sided = float_mask(hn::Ne(light.word(offsetof(LightRow, two_sided)), splat_u(0)));
   const MF faces = hn::And(hn::Ne(cos_light, zero), hn::Or(two_sided, hn::Gt(cos_light, zero)));
   sample.pdf = area_to_solid_angle(pdf_area, distance2, cos_light);
-  sample.weight = hn::IfThenElseZero(faces, hn::Div(one, sample.pdf));
+  sample.weight = hn::IfThenElseZero(faces, hn::Div(emission_profile(light, cos_light), sample.pdf));
 }
 
 // Uniform in the cone under which a sphere is seen: Shirley, Wang, Zimmerman, "Monte Carlo Techniques for Direct
@@ -78,7 +78,9 @@ HWY_INLINE void sample_sphere_cone(const LightFields& light, const Vec3& from, V
   sample.direction = if_then_else(outside, direction, sample.direction);
   sample.distance = hn::IfThenElse(outside, distance, sample.distance);
   sample.pdf = hn::IfThenElse(outside, pdf, sample.pdf);
-  sample.weight = hn::IfThenElse(outside, hn::IfThenElseZero(lit, hn::Div(one, pdf)), sample.weight);
+  const VF cos_light = hn::Div(half_chord, hn::Sqrt(hn::Max(cone.radius2, splat(1e-38f))));
+  const VF weight = hn::Div(emission_profile(light, cos_light), pdf);
+  sample.weight = hn::IfThenElse(outside, hn::IfThenElseZero(lit, weight), sample.weight);
 }
 
 HWY_INLINE void sample_point_light(const LightFields& light, const Vec3& from, LightSample& sample) {
@@ -88,6 +90,20 @@ HWY_INLINE void sample_point_light(const LightFields& light, const Vec3& from, L
   sample.direction = to_light * hn::Div(splat(1.0f), sample.distance);
   sample.pdf = hn::Zero(FloatTag());
   sample.weight = hn::Div(splat(1.0f), distance2);
+}
+
+HWY_INLINE void sample_spot(const LightFields& light, const Vec3& from, LightSample& sample) {
+  sample_point_light(light, from, sample);
+  sample.weight = hn::Mul(sample.weight, spot_falloff(light, -sample.direction));
+}
+
+// Uniform in the disc's solid angle.
+HWY_INLINE void sample_distant_disk(const LightFields& light, VF u, VF v, LightSample& sample) {
+  const VF half = light.number(offsetof(LightRow, axes));
+  sample.direction = to_world(make_frame(light.vector(offsetof(LightRow, p))), sample_uniform_cone(u, v, half));
+  sample.distance = hn::Inf(FloatTag());
+  sample.pdf = uniform_cone_pdf(half);
+  sample.weight = hn::Div(splat(1.0f), sample.pdf);
 }
 
 HWY_INLINE void sample_directional(const LightFields& light, LightSample& sample) {
@@ -140,6 +156,16 @@ HWY_INLINE LightSample sample_light(const World& world, const LightFields& light
   if (!hn::AllFalse(d, point)) {
     sample_point_light(light, from, other);
     sample = select(point, other, sample);
+  }
+  const MF spot = is_shape(shape, LightShape::spot);
+  if (!hn::AllFalse(d, spot)) {
+    sample_spot(light, from, other);
+    sample = select(spot, other, sample);
+  }
+  const MF distant_disk = is_shape(shape, LightShape::distant_disk);
+  if (!hn::AllFalse(d, distant_disk)) {
+    sample_distant_disk(light, u, v, other);
+    sample = select(distant_disk, other, sample);
   }
   const MF directional = is_shape(shape, LightShape::directional);
   if (!hn::AllFalse(d, directional)) {

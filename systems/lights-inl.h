@@ -47,6 +47,24 @@ HWY_INLINE void light_spectrum(const World& world, const LightFields& light, con
   for (int j = 0; j < 4; ++j) out[j] = hn::Mul(out[j], scale);
 }
 
+// How much of its radiance a shape sends to the angle whose cosine (of either sign) this is.
+HWY_INLINE VF emission_profile(const LightFields& light, VF cos_light) {
+  const VF power = light.number(offsetof(LightRow, cosine_power)), one = splat(1.0f);
+  if (hn::AllTrue(FloatTag(), hn::Eq(power, hn::Zero(FloatTag())))) return one;
+  return pow(hn::Min(hn::Abs(cos_light), one), power);
+}
+
+// How much of its intensity a spot sends along a unit direction: smoothstep in the cosine of the angle to the axis,
+// from 1 where the falloff starts to 0 at the cone, as pbrt-v4. 1 - cos of two unit vectors is half their difference
+// squared, which keeps its digits in narrow cones.
+HWY_INLINE VF spot_falloff(const LightFields& light, const Vec3& direction) {
+  const Vec3 off = direction - light.vector(offsetof(LightRow, normal));
+  const size_t cone = offsetof(LightRow, axes);
+  const VF inside = hn::NegMulAdd(splat(0.5f), dot(off, off), light.number(cone));
+  const VF t = clamp(hn::Mul(inside, light.number(cone + 4)), 0.0f, 1.0f);
+  return hn::Mul(hn::Mul(t, t), hn::NegMulAdd(splat(2.0f), t, splat(3.0f)));
+}
+
 // The cone under which a sphere is seen from outside.
 struct SphereCone {
   Vec3 axis;              // unit, to the centre

@@ -70,6 +70,23 @@ Spectrum4 reference_radiance(const World& world, const LightRow& row, const Spec
   return values;
 }
 
+Spectrum4 reference_emission(const World& world, const LightRow& row, double cos_light, const Spectrum4& lambda_nm) {
+  Spectrum4 values = reference_radiance(world, row, lambda_nm);
+  for (double& value : values) value *= std::pow(std::abs(cos_light), row.cosine_power);
+  return values;
+}
+
+Spectrum4 reference_disks(const World& world, const Vector& direction, const Spectrum4& lambda_nm) {
+  Spectrum4 values{};
+  for (const LightRow& row : world.lights) {
+    if (row.shape != static_cast<uint32_t>(LightShape::distant_disk)) continue;
+    const double cos = glm::dot(glm::normalize(direction), glm::normalize(read3(row.p)));
+    const Spectrum4 disk = reference_radiance(world, row, lambda_nm);
+    for (size_t j = 0; j < 4 && cos >= 1 - double{row.axes[0]}; ++j) values[j] += disk[j];
+  }
+  return values;
+}
+
 Spectrum4 reference_environment(const World& world, const Vector& direction, const Spectrum4& lambda_nm) {
   const Environment& e = world.environment;
   if (e.light == no_index) return {};
@@ -95,6 +112,24 @@ ReferenceLightPoint reference_light_point(const LightRow& row, const Vector& fro
   if (shape == LightShape::point) {
     const double d = glm::length(p - from);
     return {(p - from) / d, d, 1 / (d * d)};
+  }
+  if (shape == LightShape::spot) {
+    const double d = glm::length(p - from);
+    const double cos = glm::dot(glm::normalize(from - p), glm::normalize(read3(row.normal)));
+    const double cos_cone = 1 - double{row.axes[0]}, cos_falloff = cos_cone + 1 / double{row.axes[1]};
+    const double t = std::clamp((cos - cos_cone) / (cos_falloff - cos_cone), 0.0, 1.0);
+    return {(p - from) / d, d, 1 / (d * d) * t * t * (3 - 2 * t)};
+  }
+  if (shape == LightShape::distant_disk) {
+    // Uniform by rejection from the square around the disc's projection, which cos of the angle off the axis relates to
+    // solid angle.
+    const double cos_edge = 1 - double{row.axes[0]}, radius = std::sqrt(1 - cos_edge * cos_edge);
+    double x = 2, y = 2;
+    while (x * x + y * y > radius * radius) x = radius * (2 * random() - 1), y = radius * (2 * random() - 1);
+    const Vector axis = glm::normalize(p), side = std::abs(axis.x) > 0.5 ? Vector(0, 1, 0) : Vector(1, 0, 0);
+    const Vector s = glm::normalize(glm::cross(side, axis)), t = glm::cross(axis, s);
+    const double cos = std::sqrt(1 - x * x - y * y);
+    return {axis * cos + s * x + t * y, infinity, pi * radius * radius / cos};
   }
   Vector at, area;  // the point, and the area vector per unit density
   if (shape == LightShape::triangle) {
@@ -124,6 +159,7 @@ ReferenceLightPoint reference_light_point(const LightRow& row, const Vector& fro
   double projected = -glm::dot(area, sample.direction);
   if (row.two_sided != 0) projected = std::abs(projected);
   sample.factor = projected > 0 ? projected / (d * d) : 0;
+  if (row.cosine_power > 0) sample.factor *= std::pow(std::abs(projected) / glm::length(area), row.cosine_power);
   return sample;
 }
 

@@ -23,7 +23,11 @@ using reference::Spectrum4;
 Spectrum4 reference_spectrum(const World& world, uint32_t id, const Spectrum4& lambda_nm);
 // Of a light that is no image, W m^-2 sr^-1 nm^-1 (or what its kind is measured in).
 Spectrum4 reference_radiance(const World& world, const LightRow& row, const Spectrum4& lambda_nm);
-// From infinity, along a direction away from the scene.
+// What an area light's row emits at an angle of this cosine to its normal.
+Spectrum4 reference_emission(const World& world, const LightRow& row, double cos_light, const Spectrum4& lambda_nm);
+// From the discs at infinity, along a direction away from the scene.
+Spectrum4 reference_disks(const World& world, const Vector& direction, const Spectrum4& lambda_nm);
+// From the environment likewise.
 Spectrum4 reference_environment(const World& world, const Vector& direction, const Spectrum4& lambda_nm);
 
 struct ReferenceLightPoint {

@@ -56,11 +56,15 @@ struct Tracer {
   Spectrum4 radiance(const Vector& origin, const Vector& direction, const Spectrum4& lambda_nm, bool together,
                      uint32_t events, bool sees_lights, bool sees_sky, uint32_t mask) {
     const ReferenceHit hit = scene.intersect(origin, direction, mask);
-    if (hit.object == no_index) return sees_sky ? reference_environment(world, direction, lambda_nm) : Spectrum4{};
+    if (hit.object == no_index) {
+      const Spectrum4 sky = sees_sky ? reference_environment(world, direction, lambda_nm) : Spectrum4{};
+      return sees_lights ? plus(sky, reference_disks(world, direction, lambda_nm)) : sky;
+    }
     Spectrum4 sum{};
     if (sees_lights && hit.light != no_index) {
       const LightRow& row = world.lights[hit.light];
-      if (row.two_sided != 0 || glm::dot(direction, hit.outside) < 0) sum = reference_radiance(world, row, lambda_nm);
+      if (row.two_sided != 0 || glm::dot(direction, hit.outside) < 0)
+        sum = reference_emission(world, row, glm::dot(direction, hit.outside), lambda_nm);
     }
     if (events == 0) return sum;
     const Spectrum4 scattered = scatter(hit, direction, lambda_nm, together, events);

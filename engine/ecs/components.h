@@ -70,11 +70,17 @@ struct MaterialSlot {
   static constexpr auto fields = std::make_tuple(&MaterialSlot::material);
 };
 
-enum class LightKind : uint32_t { area, point, directional, environment };
+enum class LightKind : uint32_t { area, point, spot, directional, environment };
 
-// area         emitted radiance, W m^-2 sr^-1 nm^-1, of the entity's Geometry, on the side of the normal or both
+// area         emitted radiance along the normal, W m^-2 sr^-1 nm^-1, of the entity's Geometry, on the side of the
+// normal
+//              or both; at the angle theta to it cos^cosine_power theta times that. With `is_power` the power of the
+//              whole shape instead, W nm^-1
 // point        intensity, W sr^-1 nm^-1, at the entity's origin
-// directional  irradiance on a plane facing it, W m^-2 nm^-1; light travels along the entity's -z axis
+// spot         intensity along the entity's -z axis, all of it up to `falloff_deg` from the axis, none beyond
+// `cone_deg` directional  irradiance on a plane facing it, W m^-2 nm^-1; light travels along the entity's -z axis, from
+// one
+//              direction or evenly from a disc of `angular_diameter_deg`
 // environment  radiance from infinity, times `image` (linear RGB of Scene::images) if there is one
 struct Light {
   LightKind kind = LightKind::area;
@@ -82,8 +88,13 @@ struct Light {
   float scale = 1;
   uint32_t two_sided = 0;
   ImageId image = no_index;
-  static constexpr auto fields =
-      std::make_tuple(&Light::kind, &Light::spectrum, &Light::scale, &Light::two_sided, &Light::image);
+  float cosine_power = 0;                // 0: the same radiance in all directions
+  uint32_t is_power = 0;                 // 1: `spectrum` is the power of the shape
+  float cone_deg = 30, falloff_deg = 0;  // half angles, 0 <= falloff_deg <= cone_deg <= 180
+  float angular_diameter_deg = 0;        // below 180; 0: parallel light
+  static constexpr auto fields = std::make_tuple(&Light::kind, &Light::spectrum, &Light::scale, &Light::two_sided,
+                                                 &Light::image, &Light::cosine_power, &Light::is_power,
+                                                 &Light::cone_deg, &Light::falloff_deg, &Light::angular_diameter_deg);
 };
 
 enum class CameraKind : uint32_t { perspective, orthographic };

@@ -51,25 +51,44 @@ struct DielectricColumns {
   Column<uint32_t> dispersive;  // 1: eta differs between wavelengths
 };
 
-// A light that can be chosen: one triangle or quadric, a point, a direction, or the environment.
-enum class LightShape : uint32_t { triangle, sphere, ellipsoid, disk, point, directional, environment };
+// A light that can be chosen: one triangle or quadric, a point, a direction or a disc of directions, or the
+// environment.
+enum class LightShape : uint32_t {
+  triangle,
+  sphere,
+  ellipsoid,
+  disk,
+  point,  // shapes before this one have an area
+  spot,
+  directional,
+  distant_disk,
+  environment
+};
 // Abstract lights have no extent: nothing runs into them, and one direction is all there is to sample.
-constexpr bool is_abstract(LightShape shape) { return shape == LightShape::point || shape == LightShape::directional; }
+constexpr bool is_abstract(LightShape shape) {
+  return shape == LightShape::point || shape == LightShape::spot || shape == LightShape::directional;
+}
 struct LightRow {
   uint32_t shape = 0;  // LightShape
   uint32_t spectrum = 0;
   float scale = 0;
   uint32_t two_sided = 0;
   float choice_probability = 0;
-  // triangle: a vertex and two edges. sphere, ellipsoid, disk: centre, and `axes`. point: position.
-  // directional: the direction towards the light.
+  // triangle: a vertex and two edges. sphere, ellipsoid, disk: centre, and `axes`. point, spot: position.
+  // directional, distant_disk: the direction towards the (centre of the) light.
   float p[3] = {};
-  float axes[9] = {};     // triangle: two edges. quadrics: world images of the local x, y, z axes (times the radius)
-  float normal[3] = {};   // triangle, disk: unit normal of the emitting side
+  // triangle: two edges. quadrics: world images of the local x, y, z axes (times the radius).
+  // spot: 1 - cos of the cone's half angle; 1 / (its difference to that where the falloff starts).
+  // distant_disk: 1 - cos of the half angle.
+  float axes[9] = {};
+  float normal[3] = {};   // triangle, disk: unit normal of the emitting side. spot: unit direction of its axis
   float area = 0;         // m^2
   float inverse[9] = {};  // ellipsoid: rows of the inverse of `axes` as columns
-  float normal_sign = 1;  // sphere, ellipsoid: -1 emits inwards. disk: unused
-  float inner = 0;        // disk: inner radius / radius
+  union {
+    float normal_sign = 1;  // sphere, ellipsoid: -1 emits inwards
+    float inner;            // disk: inner radius / radius
+  };
+  float cosine_power = 0;  // shapes with an area: radiance goes with cos^cosine_power
 };
 static_assert(sizeof(LightRow) == 32 * sizeof(float));
 
@@ -110,7 +129,8 @@ struct World {
   ConductorColumns conductor;
   DielectricColumns dielectric;
   Column<LightRow> lights;
-  Distribution1D light_choice;     // over the rows of lights that are sampled; empty where there is none
+  std::vector<uint32_t> distant_disks;  // the rows of lights of that shape: rays that leave the scene run into them
+  Distribution1D light_choice;          // over the rows of lights that are sampled; empty where there is none
   Column<uint32_t> summed_lights;  // rows of abstract lights that are summed one by one (local, recursive), not sampled
   Environment environment;
   CameraRow camera;

@@ -9,7 +9,9 @@ void read_meshes(SceneContext& context, const Json::Value& meshes);
 
 std::optional<Geometry> read_geometry(SceneContext& context, const Json::Value& value);
 std::optional<Material> read_material(SceneContext& context, const Json::Value& value);
-std::optional<Light> read_light(SceneContext& context, const Json::Value& value);
+// Sets the light of the entity; a sky becomes two children of it.
+void read_light(SceneContext& context, Entity entity, const Json::Value& value);
+void read_sky(SceneContext& context, Entity entity, const JsonObject& object);
 std::optional<Camera> read_camera(const SceneContext& context, const Json::Value& value);
 Visibility read_visibility(const SceneContext& context, const Json::Value& value);
 

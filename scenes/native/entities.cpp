@@ -108,10 +108,9 @@ class EntityReader {
   }
 
   void set_light(Entity entity, const JsonObject& object, const Json::Value& value) {
-    const auto light = read_light(context_, value);
-    if (!light) return;
-    registry_.set(entity, *light);
-    if (light->kind == LightKind::area && !object.has("geometry"))
+    read_light(context_, entity, value);
+    if (!registry_.has<Light>(entity)) return;
+    if (registry_.get<Light>(entity).kind == LightKind::area && !object.has("geometry"))
       reader_.error(value, "an area light needs a 'geometry' on the same entity");
   }
 

@@ -6,6 +6,7 @@
 #include "scenes/images/read_image.h"
 #include "scenes/native/components.h"
 #include "scenes/native/spectra.h"
+#include "systems/light_rows.h"
 
 namespace metamer {
 namespace {
@@ -18,13 +19,14 @@ struct Photometry {
 };
 struct Brightness {
   std::string_view type, radiometric;
-  std::array<Photometry, 2> photometric;  // a second without a key is none
+  std::array<Photometry, 3> photometric;  // those without a key are none
 };
 constexpr Brightness brightnesses[] = {
-    {"area", "radiance", {{{"luminance", 1}, {}}}},
-    {"environment", "radiance", {{{"luminance", 1}, {}}}},
-    {"point", "intensity", {{{"candela", 1}, {"lumens", 1 / (4 * std::numbers::pi)}}}},
-    {"directional", "irradiance", {{{"lux", 1}, {}}}},
+    {"area", "radiance", {{{"luminance", 1}, {"nits", 1}, {"lumens", 1}}}},  // lumens: see Light::is_power
+    {"environment", "radiance", {{{"luminance", 1}, {"nits", 1}, {}}}},
+    {"point", "intensity", {{{"candela", 1}, {"lumens", 1 / (4 * std::numbers::pi)}, {}}}},
+    {"spot", "intensity", {{{"candela", 1}, {"lumens", 1}, {}}}},  // lumens: divided by the cone's flux
+    {"directional", "irradiance", {{{"lux", 1}, {}, {}}}},
 };
 
 const Brightness& brightness_of(std::string_view type) {
@@ -101,25 +103,49 @@ void read_environment_image(SceneContext& context, const JsonObject& object, Col
   context.scene.images.push_back(std::move(image));
 }
 
+// Half angles in degrees. Where the falloff starts is Mitsuba's default, three quarters of the cone.
+void read_cone(const JsonReader& reader, const JsonObject& object, Light& light) {
+  light.cone_deg = object.number_f("cone_angle", {0, 90, true, false}, 30);
+  light.falloff_deg = object.number_f("falloff_start", {0, 90}, 0.75f * light.cone_deg);
+  if (light.falloff_deg <= light.cone_deg) return;
+  reader.error(*object.find("falloff_start"),
+               fmt::format("'falloff_start' is {:g}; expected at most the 'cone_angle', {:g}", light.falloff_deg,
+                           light.cone_deg));
+  light.falloff_deg = light.cone_deg;
+}
+
 }  // namespace
 
-std::optional<Light> read_light(SceneContext& context, const Json::Value& value) {
+void read_light(SceneContext& context, Entity entity, const Json::Value& value) {
   const JsonObject object(context.reader, value, "light");
-  if (!object.is_valid()) return std::nullopt;
+  if (!object.is_valid()) return;
+  if (object.type() == "sky") return read_sky(context, entity, object);
   Light light;
-  light.kind = object.type() == "area"          ? LightKind::area
-               : object.type() == "point"       ? LightKind::point
-               : object.type() == "directional" ? LightKind::directional
-                                                : LightKind::environment;
-  light.scale = object.number_f("scale", not_negative, 1);
   ColorSpace space = ColorSpace::srgb;
-  if (light.kind == LightKind::area) light.two_sided = object.boolean("two_sided", false) ? 1 : 0;
-  if (light.kind == LightKind::environment) {
+  double flux_per_lumen_unit = 1;
+  light.scale = object.number_f("scale", not_negative, 1);
+  if (object.type() == "area") {
+    light.kind = LightKind::area;
+    light.two_sided = object.boolean("two_sided", false) ? 1 : 0;
+    light.cosine_power = object.number_f("cosine_power", {0, 1e6}, 0);
+    light.is_power = object.has("lumens") ? 1 : 0;
+  } else if (object.type() == "point") {
+    light.kind = LightKind::point;
+  } else if (object.type() == "spot") {
+    light.kind = LightKind::spot;
+    read_cone(context.reader, object, light);
+    if (object.has("lumens")) flux_per_lumen_unit = flux_per_unit(abstract_light(glm::dmat4(1), light));
+  } else if (object.type() == "directional") {
+    light.kind = LightKind::directional;
+    light.angular_diameter_deg = object.number_f("angular_diameter", {0, 180, false, true}, 0);
+  } else {
+    light.kind = LightKind::environment;
     space = static_cast<ColorSpace>(object.choice("space", color_space_names(), 0));
     read_environment_image(context, object, space, light);
   }
   light.spectrum = read_brightness(context, object, space);
-  return light;
+  light.scale = static_cast<float>(light.scale / flux_per_lumen_unit);
+  context.scene.registry.set(entity, light);
 }
 
 }  // namespace metamer

@@ -10,6 +10,7 @@
 #include "scenes/images/read_image.h"
 #include "scenes/pbrt/matrix.h"
 #include "scenes/pbrt/reader.h"
+#include "systems/light_rows.h"
 
 namespace metamer::pbrt {
 namespace {
@@ -50,9 +51,7 @@ double target_factor(Parameters& parameters, std::string_view name, double per_u
   return target > 0 ? target / per_unit_scale : 1;
 }
 
-void add_light(Reader& reader, Parameters& parameters, LightKind kind, SpectrumId spectrum, double scale,
-               const glm::dmat4& transform, ImageId image = no_index) {
-  const Light light{kind, spectrum, to_light_scale(parameters, scale), 0, image};
+void add_light(Reader& reader, Parameters& parameters, const Light& light, const glm::dmat4& transform) {
   Registry& registry = reader.scene.registry;
   const Entity entity = registry.create();
   registry.set(entity, to_component(transform));
@@ -60,11 +59,46 @@ void add_light(Reader& reader, Parameters& parameters, LightKind kind, SpectrumI
   registry.set(entity, parameters.source());
 }
 
+void add_light(Reader& reader, Parameters& parameters, LightKind kind, SpectrumId spectrum, double scale,
+               const glm::dmat4& transform, ImageId image = no_index) {
+  Light light;
+  light.kind = kind;
+  light.spectrum = spectrum;
+  light.scale = to_light_scale(parameters, scale);
+  light.image = image;
+  add_light(reader, parameters, light, transform);
+}
+
 void read_point(Reader& reader, Parameters& parameters) {
   const LightSpectrum spectrum = read_light_spectrum(reader, parameters, "I");
   const double scale = spectrum.scale * target_factor(parameters, "power", 4 * std::numbers::pi);
   const glm::dvec3 from = parameters.point3("from", glm::dvec3(0));
   add_light(reader, parameters, LightKind::point, spectrum.id, scale, reader.state.transform * translation(from));
+}
+
+// The falloff is pbrt's: a smoothstep between the cosines of the angles where it starts and where the light ends.
+void read_spot(Reader& reader, Parameters& parameters) {
+  const LightSpectrum spectrum = read_light_spectrum(reader, parameters, "I");
+  const double cone = parameters.positive("coneangle", 30), delta = parameters.number_from("conedeltaangle", 5, 0);
+  if (cone > 180) parameters.error("coneangle", fmt::format("'coneangle' is {:g}; expected at most 180 degrees", cone));
+  const double falloff = std::abs(cone - delta);  // as there: the default of 5 goes with a cone of 3, too
+  if (falloff > cone) {
+    parameters.error(
+        "conedeltaangle",
+        fmt::format("'conedeltaangle' is {:g}; expected at most twice the 'coneangle', {:g}", delta, cone));
+  }
+  Light light;
+  light.kind = LightKind::spot;
+  light.spectrum = spectrum.id;
+  light.cone_deg = static_cast<float>(std::min(cone, 180.0));
+  light.falloff_deg = static_cast<float>(std::min(falloff, cone));
+  const double flux = flux_per_unit(abstract_light(glm::dmat4(1), light));
+  light.scale = to_light_scale(parameters, spectrum.scale * target_factor(parameters, "power", flux));
+  const glm::dvec3 from = parameters.point3("from", glm::dvec3(0));
+  const glm::dvec3 backward = from - parameters.point3("to", glm::dvec3(0, 0, 1));
+  if (!(glm::length(backward) > 0)) return parameters.error("to", "'from' and 'to' coincide");
+  add_light(reader, parameters, light,
+            reader.state.transform * translation(from) * frame_of_z(glm::normalize(backward)));
 }
 
 void read_distant(Reader& reader, Parameters& parameters) {
@@ -135,6 +169,7 @@ float to_light_scale(Parameters& parameters, double scale) {
 
 void read_light(Reader& reader, std::string_view kind, Parameters& parameters) {
   if (kind == "point") return read_point(reader, parameters);
+  if (kind == "spot") return read_spot(reader, parameters);
   if (kind == "distant") return read_distant(reader, parameters);
   if (kind == "infinite") return read_infinite(reader, parameters);
   parameters.ignore_the_rest();

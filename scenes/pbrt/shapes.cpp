@@ -116,8 +116,11 @@ Light to_light(Parameters& parameters, const AreaLight& area_light, double area)
     parameters.messages().warning(parameters.source(),
                                   "a light without area cannot emit the 'power' of its AreaLightSource");
   }
-  return {LightKind::area, area_light.spectrum, to_light_scale(parameters, scale), area_light.two_sided ? 1u : 0u,
-          no_index};
+  Light light;
+  light.spectrum = area_light.spectrum;
+  light.scale = to_light_scale(parameters, scale);
+  light.two_sided = area_light.two_sided ? 1 : 0;
+  return light;
 }
 
 }  // namespace

@@ -91,8 +91,8 @@ SceneInfo gather(const LoadedScene& loaded, const BuiltWorld& built) {
   info.zero_area_triangles = world.zero_area_triangles;
   info.materials = count_kinds<MaterialKind, 4>(scene.registry.table<Material>().column<&Material::kind>(),
                                                 {"diffuse", "conductor", "dielectric", "rough"});
-  info.lights = count_kinds<LightKind, 4>(scene.registry.table<Light>().column<&Light::kind>(),
-                                          {"area", "point", "directional", "environment"});
+  info.lights = count_kinds<LightKind, 5>(scene.registry.table<Light>().column<&Light::kind>(),
+                                          {"area", "point", "spot", "directional", "environment"});
   info.light_choices = world.lights.size();
   info.spectra = scene.spectra.size();
   info.images = scene.images.size();

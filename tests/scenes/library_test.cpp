@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -99,6 +100,18 @@ TEST(Library, PrismDeviatesShortWavelengthsMost) {
   // Pixels; the spectrum is about 18 wide.
   EXPECT_LT(centre_z, centre_y - 3);
   EXPECT_LT(centre_y, centre_x - 0.3);
+}
+
+// The four lamps' centres in the picture: 1, 2 and 4 m away and 2 m turned.
+TEST(Library, LampsAreEquallyBrightAtAnyDistance) {
+  const uint32_t width = 240, height = 100;
+  const Picture xyz = render_small("radiance-and-distance", width, height, 16);
+  const double half = std::tan(17 * 3.14159265358979 / 180);  // of the shorter side, at a distance of 1
+  for (const auto& [x, z] : {std::pair{-0.47, 1.0}, {-0.2, 2.0}, {0.6, 4.0}, {0.9, 2.0}}) {
+    const double column = width / 2.0 + x / z / half * height / 2, row = height / 2.0 + 0.05 / z / half * height / 2;
+    const size_t pixel = static_cast<size_t>(row) * width + static_cast<size_t>(column);
+    EXPECT_NEAR(xyz.g[pixel], 0.8, 0.008) << x;
+  }
 }
 
 }  // namespace

@@ -45,6 +45,43 @@ TEST(Analytic, AnEmittersRadianceDoesNotDependOnItsDistance) {
   }
 }
 
+// The picture itself: at 1, 2 and 4 m, and tilted by 60 degrees, every pixel within the lamp is the same to the last
+// bit.
+TEST(Analytic, ALampLooksTheSameFromAnyDistanceAndTilted) {
+  struct View {
+    double distance, tilt_deg;
+  };
+  std::vector<Film> films;
+  for (const View view : {View{1, 0}, View{2, 0}, View{4, 0}, View{2, 60}}) {
+    SceneBuilder b(8, 8, 16, 4);
+    b.look_at({0, 0, view.distance}, {0, 0, 0}, perspective(10));
+    b.emit(b.add(rectangle(2, 2), b.diffuse(0.3), turned(view.tilt_deg, 0, 1, 0)), b.named("D65"), 1);
+    films.push_back(render_film(*b.freeze()));
+  }
+  const double luminance = SceneBuilder(1, 1, 1, 1).scene.spectra.luminance(unit_spectrum);
+  for (const Film& film : films)
+    for (size_t pixel = 0; pixel < film.pixel_count(); ++pixel) {
+      EXPECT_EQ(mean_xyz(film, pixel), mean_xyz(films[0], pixel));
+      EXPECT_GT(mean_xyz(film, pixel)[1], 50 * luminance);  // of D65, about 100 everywhere
+    }
+}
+
+// Smaller than a pixel it covers a part of it, in proportion to the solid angle under which it is seen.
+TEST(Analytic, ALampBelowAPixelFallsWithTheSquareOfItsDistance) {
+  for (const double distance : {1.0, 2.0, 4.0}) {
+    SceneBuilder b(4, 4, 1 << 14, 0);
+    b.look_at({0, 0, distance}, {0, 0, 0}, perspective(40));
+    const double pixel = 2 * std::tan(20 * pi / 180) / 4;  // its side at a distance of 1
+    b.emit(b.add(disk(0.08f), b.diffuse(0.0), moved(0.05, 0.06, 0)), b.constant(1), 1);
+    const Film film = render_film(*b.freeze());
+    double sum = 0;
+    for (size_t i = 0; i < film.pixel_count(); ++i) sum += mean_xyz(film, i)[1];
+    const double share = pi * 0.0064 / (distance * distance) / (pixel * pixel);
+    const double luminance = b.scene.spectra.luminance(b.constant(1));
+    EXPECT_NEAR(sum / luminance / share, 1, 0.01) << distance;
+  }
+}
+
 // Factors from an element, J. Howell, A Catalog of Radiation Heat Transfer Configuration Factors, third edition.
 struct ElementCase {
   const char* name;

@@ -238,6 +238,37 @@ TEST(LightSample, AConstantSkyBesideALamp) {
   expect_sides_agree(again, {0, 0, 0}, 1 - sky * hidden);
 }
 
+TEST(LightSample, ShapesWithACosinePower) {
+  for (const bool inside : {false, true}) {
+    for (Geometry shape : {sphere(1), rectangle(2, 1.5f), disk(1, 0.4f)}) {
+      const bool round = shape.kind == ShapeKind::sphere;
+      if (inside && !round) continue;
+      SceneBuilder b = empty();
+      shape.flip_normal = inside ? 1 : 0;
+      const glm::dmat4 place = inside  ? moved(0.4, 0.3, -0.2)
+                               : round ? moved(0.4, 1.2, -0.5)
+                                       : moved(0.3, 0, 1) * turned(160, 1, 0.3, 0);
+      const Entity lamp = b.add(shape, b.diffuse(0.0), place);
+      Light light;
+      light.spectrum = unit_spectrum;
+      light.cosine_power = 2.5f;
+      b.scene.registry.set(lamp, light);
+      expect_sides_agree(b, {0, 0, 0}, 1);
+    }
+  }
+}
+
+TEST(LightSample, ADiscAtInfinityBesideALamp) {
+  SceneBuilder b = empty();
+  Light sun;
+  sun.kind = LightKind::directional;
+  sun.spectrum = b.constant(0.8);
+  sun.angular_diameter_deg = 70;
+  b.scene.registry.set(b.place(turned(40, 1, 0.3, 0)), sun);
+  b.emit(b.add(rectangle(0.5f, 0.5f), b.diffuse(0.0), moved(0.3, 0, -1)), unit_spectrum, 1);
+  expect_sides_agree(b, {0, 0, 0}, 1);
+}
+
 TEST(LightSample, ImagesOfBothMappings) {
   for (const ImageMapping mapping : {ImageMapping::latitude_longitude, ImageMapping::equal_area}) {
     // Black or one grey: there are directions that must never be drawn.

@@ -120,6 +120,43 @@ TEST(Oracle, AgreesOnADirectionalLightBesideAPointLight) {
   expect_agreement(*b.freeze(), 2048, 0.02);
 }
 
+TEST(Oracle, AgreesOnASpotBesideLampsOfACosinePower) {
+  SceneBuilder b(side, side, 2048, 4);
+  add_walls(b);
+  b.add(sphere(0.5f), b.conductor(b.named("Au.n"), b.named("Au.k"), 0.2f, 0.2f), moved(0.3, -0.4, 0));
+  Light light;
+  light.kind = LightKind::spot;
+  light.spectrum = b.named("A");
+  light.scale = 0.01f;
+  light.cone_deg = 35;
+  light.falloff_deg = 15;
+  b.scene.registry.set(b.place(moved(-0.4, 0.9, 0.6) * turned(-60, 1, 0.3, 0)), light);
+  Light lamp;
+  lamp.spectrum = b.named("D65");
+  lamp.scale = 0.01f;
+  lamp.cosine_power = 4;
+  b.scene.registry.set(b.add(disk(0.3f), b.diffuse(0.0), moved(0, 0.95, 0) * turned(90, 1, 0, 0)), lamp);
+  b.scene.registry.set(b.add(sphere(0.2f), b.diffuse(0.0), moved(-0.6, -0.3, 0.2)), lamp);
+  look(b);
+  expect_agreement(*b.freeze(), 2048, 0.03);
+}
+
+TEST(Oracle, AgreesOnADiscAtInfinityBesideTheSky) {
+  SceneBuilder b(side, side, 2048, 4);
+  add_floor(b);
+  b.add(sphere(0.6f), b.dielectric(b.constant(1.5)), moved(-0.5, -0.3, 0));
+  b.add(sphere(0.5f), b.conductor(b.named("Au.n"), b.named("Au.k"), 0.3f, 0.3f), moved(0.6, -0.4, 0));
+  Light sun;
+  sun.kind = LightKind::directional;
+  sun.spectrum = b.named("D50");
+  sun.scale = 0.01f;
+  sun.angular_diameter_deg = 40;
+  b.scene.registry.set(b.place(turned(-60, 1, 0.4, 0)), sun);
+  b.light(LightKind::environment, b.named("D65"), 0.003f);
+  look(b);
+  expect_agreement(*b.freeze(), 2048, 0.03);
+}
+
 TEST(Oracle, AgreesUnderAConstantSkyThroughAGaussianFilter) {
   SceneBuilder b(side, side, 256, 5);
   b.scene.settings.filter = {FilterKind::gaussian, 1.5f, 1.0f, 0.5f};

@@ -2,8 +2,8 @@
 //
 // Both are unbiased with independent errors of known variance: the film's from its four replicates, pooled over the
 // pixels of a block (48 degrees of freedom), the oracle's from its samples. False alarms: a block's |t| of 48 degrees
-// passes 6 with probability 2.4e-7, the picture's |z| passes 4.5 with 7e-6; all scenes together (14 scenes of 16 blocks
-// and 3 channels: 672 and 42 figures) by chance once in 2000 choices of seeds. Seeds are fixed, so a passing test stays
+// passes 6 with probability 2.4e-7, the picture's |z| passes 4.5 with 7e-6; all scenes together (16 scenes of 16 blocks
+// and 3 channels: 768 and 48 figures) by chance once in 1900 choices of seeds. Seeds are fixed, so a passing test stays
 // passing. Smallest visible bias: each scene must have enough samples that a bias of the stated fraction of the
 // picture's Y stands two standard errors beyond the alarm, that is, is noticed with probability 0.977.
 #pragma once
