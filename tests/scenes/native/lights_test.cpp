@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "engine/spectrum/rgb_fit.h"
 #include "scenes/read_scene.h"
 #include "scenes/sky/sky.h"
 #include "tests/scenes/support/files.h"

@@ -128,7 +128,8 @@ TEST(NativeMistakes, TypesOfObjects) {
             "scene.json:3: error: 'type' is the string \"shpere\"; expected 'mesh', 'sphere', 'disk' or 'rectangle' "
             "(did you mean 'sphere'?)\n");
   EXPECT_EQ(messages_of_entity("{\"light\": {}}"),
-            "scene.json:3: error: 'light' has no 'type'; expected 'area', 'point', 'directional' or 'environment'\n");
+            "scene.json:3: error: 'light' has no 'type'; expected 'area', 'point', 'spot', 'directional', "
+            "'environment' or 'sky'\n");
   EXPECT_EQ(
       messages_of_entity("{\"camera\": \"front\"}"),
       "scene.json:3: error: 'camera' is the string \"front\"; expected an object with a 'type' of 'perspective' or "
@@ -352,7 +353,7 @@ TEST(NativeMistakes, Lights) {
       "scene.json:3: error: 'sun_elevation' is the number -4; expected a number above 0 and of at most 90\n"
       "scene.json:3: error: 'ground_albedo' is the number 2; expected a number from 0 to 1\n"
       "scene.json:3: error: 'resolution' is 9; expected an even number, so that the horizon falls between two rows\n"
-      "scene.json:4: error: 'up' is the string \"x\"; expected 'y' or 'z'\n"
+      "scene.json:4: error: 'up' is the string \"x\"; expected 'y' or 'z' (did you mean 'y'?)\n"
       "scene.json:4: error: 'scale' is the number -1; expected a number of at least 0\n");
   EXPECT_THAT(messages_of_light(R"("type": "sky", "turbidty": 3)"), HasSubstr("did you mean 'turbidity'"));
   EXPECT_THAT(messages_of_entity("{\"camera\": {\"type\": \"perspective\"}, \"geometry\": {\"type\": \"sphere\"}}"),
