@@ -231,11 +231,6 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
   });
   // Embree reads 16 bytes for the last vertex.
   for (int i = 0; i < 4; ++i) world.positions.push_back(0);
-  // Dead lanes fetch the first triangle even where there are quadrics only.
-  world.triangle_vertices.reserve(3);
-  world.positions.reserve(9);
-  world.normals.reserve(9);
-  world.uvs.reserve(6);
 }
 
 }  // namespace metamer
