@@ -46,8 +46,8 @@ void read_sky(SceneContext& context, Entity entity, const JsonObject& object) {
   settings.sun_elevation_deg = object.number("sun_elevation", {0, 90, true, false}, settings.sun_elevation_deg);
   settings.sun_azimuth_deg = object.number("sun_azimuth", {-360, 360}, settings.sun_azimuth_deg);
   settings.has_sun = object.boolean("sun", true);
-  settings.ground_albedo = object.number("ground_albedo", unit_interval, 0.2);
-  settings.resolution = object.integer("resolution", 8, 8192, settings.resolution);
+  settings.ground_albedo = object.number("ground_albedo", unit_interval, settings.ground_albedo);
+  settings.resolution = object.integer("resolution", resolution_min, resolution_max, settings.resolution);
   if (settings.resolution % 2 != 0)
     context.reader.error(*object.find("resolution"),
                          fmt::format("'resolution' is {}; expected an even number, so that the horizon falls between "

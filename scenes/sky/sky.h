@@ -11,6 +11,8 @@ namespace metamer {
 // What the model was fitted to: clear air (2) to thick haze (10), sun above the horizon.
 inline constexpr double turbidity_min = 2, turbidity_max = 10;
 
+inline constexpr uint32_t resolution_min = 8, resolution_max = 8192;  // rows
+
 // Seen from the ground: 2 x 1.39 / 300 rad, the disc that the paper's table of the sun's radiance belongs to.
 inline constexpr double sun_diameter_deg = 0.531;
 
@@ -20,9 +22,9 @@ double sun_projected_solid_angle();
 struct SkySettings {
   double turbidity = 3;  // turbidity_min to turbidity_max
   double sun_elevation_deg = 45, sun_azimuth_deg = 180;
-  bool has_sun = true;        // as far as the ground is lit by it
-  double ground_albedo = 0;   // of the diffuse plane below the horizon, 0 to 1
-  uint32_t resolution = 256;  // rows of the image, an even number
+  bool has_sun = true;         // as far as the ground is lit by it
+  double ground_albedo = 0.2;  // of the diffuse plane below the horizon, 0 to 1
+  uint32_t resolution = 256;   // rows of the image, an even number
 };
 
 // Towards the middle of the sun, unit.
