@@ -326,36 +326,6 @@ TEST(NativeMistakes, Lights) {
       HasSubstr("'mapping' goes with 'image' only"));
   EXPECT_THAT(messages_of_entity("{\"light\": {\"type\": \"environment\", \"image\": \"none.exr\"}}"),
               HasSubstr("scene.json:3: error: cannot read 'none.exr': No such file or directory"));
-  const auto messages_of_light = [](const std::string& keys) {
-    return messages_of_entity("{\"geometry\": {\"type\": \"sphere\"}, \"light\": {" + keys + "}}");
-  };
-  EXPECT_EQ(messages_of_light(R"("type": "area", "nits": 3, "cosine_power": -1)"),
-            "scene.json:3: error: 'cosine_power' is the number -1; expected a number from 0 to 1000000\n");
-  EXPECT_EQ(messages_of_light(R"("type": "area", "nits": 3, "lumens": 1)"),
-            "scene.json:3: error: 'nits' and 'lumens' exclude each other\n");
-  EXPECT_EQ(messages_of_light(R"("type": "spot", "candela": -3, "cone_angle": 91)"),
-            "scene.json:3: error: 'cone_angle' is the number 91; expected a number above 0 and of at most 90\n"
-            "scene.json:3: error: 'candela' is the number -3; expected a number of at least 0\n");
-  EXPECT_EQ(messages_of_light(R"("type": "spot", "candela": 3, "cone_angle": 0)"),
-            "scene.json:3: error: 'cone_angle' is the number 0; expected a number above 0 and of at most 90\n");
-  EXPECT_EQ(messages_of_light(R"("type": "spot", "candela": 3, "cone_angle": 20, "falloff_start": 21)"),
-            "scene.json:3: error: 'falloff_start' is 21; expected at most the 'cone_angle', 20\n");
-  EXPECT_THAT(messages_of_light(R"("type": "spt", "candela": 3)"), HasSubstr("did you mean 'spot'"));
-  EXPECT_THAT(messages_of_light(R"("type": "spot", "candela": 3, "cone_angel": 3)"),
-              HasSubstr("did you mean 'cone_angle'"));
-  EXPECT_EQ(
-      messages_of_light(R"("type": "directional", "lux": 3, "angular_diameter": 180)"),
-      "scene.json:3: error: 'angular_diameter' is the number 180; expected a number of at least 0 and below 180\n");
-  EXPECT_EQ(
-      messages_of_light(R"("type": "sky", "turbidity": 1.5, "sun_elevation": -4, "ground_albedo": 2, "resolution": 9,
-                           "up": "x", "scale": -1)"),
-      "scene.json:3: error: 'turbidity' is the number 1.5; expected a number from 2 to 10\n"
-      "scene.json:3: error: 'sun_elevation' is the number -4; expected a number above 0 and of at most 90\n"
-      "scene.json:3: error: 'ground_albedo' is the number 2; expected a number from 0 to 1\n"
-      "scene.json:3: error: 'resolution' is 9; expected an even number, so that the horizon falls between two rows\n"
-      "scene.json:4: error: 'up' is the string \"x\"; expected 'y' or 'z' (did you mean 'y'?)\n"
-      "scene.json:4: error: 'scale' is the number -1; expected a number of at least 0\n");
-  EXPECT_THAT(messages_of_light(R"("type": "sky", "turbidty": 3)"), HasSubstr("did you mean 'turbidity'"));
   EXPECT_THAT(messages_of_entity("{\"camera\": {\"type\": \"perspective\"}, \"geometry\": {\"type\": \"sphere\"}}"),
               HasSubstr("an entity with a camera cannot have 'geometry'; make it a child"));
 }
