@@ -1,5 +1,7 @@
 // Local and recursive light transport on scenes with closed-form answers: every path matches them on each of its
 // wavelengths, without noise. Then path tracing, statistically.
+#include <set>
+
 #include "engine/spectrum/spectrum_set.h"
 #include "systems/bsdf/reference.h"
 #include "tests/reference_path.h"
@@ -183,6 +185,34 @@ TEST(Levels, PathTracingFindsTheSameSlabOnAverage) {
     expect_mean(
         trace_radiances(*b.freeze()), [&](double) { return 3 * (1 - f) / (1 + f); }, 0.05);
   }
+}
+
+// Behind a dispersing surface each wavelength is a node of its own, and leads: what follows asks the first.
+TEST(Levels, WavelengthsThatPartLeadTheirNodes) {
+  SceneBuilder b = scene(Integrator::recursive);
+  look_at_point(b, from_angle(45, 2), {0, 0, 0});
+  b.add(rectangle(4, 4), b.dielectric(b.named("SF66")), floor_up);
+  const std::unique_ptr<World> world = b.freeze();
+  Batch batch;
+  Counters counters;
+  const RayPacket packet{0, 0, 0};
+  camera_rays(*world, {&packet, 1}, {0, 0, 4, 4}, batch.paths, batch.slots);
+  std::multiset<float> from_camera, refracted;
+  for (const float* column : batch.slots.lambda_nm) from_camera.insert(column, column + 16);
+  trace_recursive(*world, 0, batch, counters);
+  uint32_t depth = 0, reflected = 0;
+  ASSERT_TRUE(pop_nodes(rays_per_batch(*world), batch.nodes, &depth, batch.paths, batch.slots));
+  EXPECT_EQ(depth, 1u);
+  for (uint32_t i = 0; i < batch.paths.size; ++i) {
+    EXPECT_GT(batch.paths.throughput[0][i], 0);
+    if (batch.paths.throughput[1][i] > 0)
+      ++reflected;
+    else
+      refracted.insert(batch.paths.lambda_nm[0][i]);
+    EXPECT_EQ(batch.paths.lambda_nm[0][i], batch.slots.lambda_nm[0][i]);
+  }
+  EXPECT_EQ(reflected, 16u);
+  EXPECT_EQ(refracted, from_camera);
 }
 
 // From below the surface: the sky is (1 - F) n^2 bright within the window, outside it everything is mirrored.
