@@ -131,6 +131,7 @@ struct ShadowStream {
 // What a path, or one node of a ray tree, gathers, by its place in the batch.
 struct Slots {
   uint32_t size = 0;
+  bool are_roots = true;  // camera samples; false: further nodes of trees whose roots are accounted for already
   Columns<float, 4> lambda_nm, inv_pdf_nm;
   Columns<float, 4> radiance;  // W m^-2 sr^-1 nm^-1, each wavelength on its own
   uint32_t *pixel, *sample;    // pixel of the tile (row-major), or dead_lane outside the picture; sample index

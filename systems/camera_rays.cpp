@@ -100,6 +100,7 @@ void camera_rays_kernel(const World& world, std::span<const RayPacket> packets, 
     }
   }
   paths.size = slots.size = static_cast<uint32_t>(i);
+  slots.are_roots = true;
 }
 
 }  // namespace

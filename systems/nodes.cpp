@@ -88,6 +88,7 @@ bool pop_nodes(uint32_t most, NodeStack& nodes, uint32_t* depth, PathStream& pat
   for (float* column : slots.radiance) std::fill(column, column + count, 0.0f);
   for (uint32_t i = 0; i < count; ++i) paths.slot[i] = i;
   paths.size = slots.size = count;
+  slots.are_roots = false;
   nodes.rays.size = first;
   if (first == level.begin) nodes.levels.pop_back();
   *depth = level.depth;

@@ -28,12 +28,12 @@ inline std::vector<PathRadiance> trace_radiances(const World& world) {
   Batch batch;
   Counters counters;
   // The nodes of a ray tree carry the wavelengths of their root, in another order where they parted.
-  const auto gather = [&](uint32_t depth, const Slots& slots) {
+  const auto gather = [&](const Slots& slots) {
     for (uint32_t i = 0; i < slots.size; ++i) {
       PathRadiance& path = result[pixels * slots.sample[i] + slots.pixel[i]];
       for (size_t j = 0; j < 4; ++j) {
         const double lambda_nm = double{slots.lambda_nm[j][i]};
-        if (depth == 0) path.lambda_nm[j] = lambda_nm;
+        if (slots.are_roots) path.lambda_nm[j] = lambda_nm;
         for (size_t k = 0; k < 4; ++k)
           if (path.lambda_nm[k] == lambda_nm) path.radiance[k] += double{slots.radiance[j][i]};
       }
@@ -45,7 +45,7 @@ inline std::vector<PathRadiance> trace_radiances(const World& world) {
     uint32_t depth = 0;
     do {
       trace_rays(world, depth, batch, counters);
-      gather(depth, batch.slots);
+      gather(batch.slots);
     } while (pop_nodes(rays_per_batch(world), batch.nodes, &depth, batch.paths, batch.slots));
   }
   return result;
