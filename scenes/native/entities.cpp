@@ -58,7 +58,11 @@ class EntityReader {
   void set_components(const PendingEntity& pending) {
     const auto& [entity, object] = pending;
     if (const Json::Value* parent = object.find("parent")) set_parent(entity, *parent);
-    if (const Json::Value* material = object.find("material")) set_material(entity, *material);
+    if (const Json::Value* material = object.find("material")) {
+      context_.reader.set_subject(context_.scene.describe(entity));
+      set_material(entity, *material);
+      context_.reader.set_subject({});
+    }
     if (const Json::Value* value = object.find("geometry"))
       if (const auto geometry = read_geometry(context_, *value)) registry_.set(entity, *geometry);
     if (const Json::Value* value = object.find("light")) set_light(entity, object, *value);
@@ -176,7 +180,9 @@ void read_materials(SceneContext& context, const Json::Value& materials) {
     const Entity entity = context.scene.registry.create();
     context.scene.registry.set(entity, Source{context.file, context.reader.document().at_key(*it).line});
     name_entity(context, entity, it.name(), *it, true);
+    context.reader.set_subject(fmt::format("material '{}'", printable_text(it.name())));
     if (const auto material = read_material(context, *it)) context.scene.registry.set(entity, *material);
+    context.reader.set_subject({});
   }
 }
 

@@ -18,7 +18,11 @@ constexpr KeySpec material_diffuse[] = {{"type", required}, {"reflectance", requ
 constexpr KeySpec material_rough[] = {{"type", required}, {"kd"}, {"ks"}, {"shininess"}, {"normalized"}};
 constexpr KeySpec material_conductor[] = {{"type", required}, {"metal"},     {"eta"},
                                           {"kappa"},          {"roughness"}, {"fresnel"}};
-constexpr KeySpec material_dielectric[] = {{"type", required}, {"glass"}, {"eta"}, {"fresnel"}};
+constexpr KeySpec material_dielectric[] = {{"type", required}, {"glass"},    {"eta"},  {"kappa"},    {"roughness"},
+                                           {"fresnel"},        {"priority"}, {"thin"}, {"thickness"}};
+constexpr KeySpec material_smooth[] = {{"type", required}, {"metal"},    {"glass"}, {"n"},        {"kappa"},
+                                       {"fresnel"},        {"priority"}, {"thin"},  {"thickness"}};
+constexpr KeySpec material_mirror[] = {{"type", required}};
 constexpr KeySpec mesh[] = {{"file"}, {"positions"}, {"indices"}, {"normals"}, {"uvs"}};
 constexpr KeySpec entity[] = {{"name"},     {"parent"}, {"transform"}, {"geometry"},
                               {"material"}, {"light"},  {"camera"},    {"visibility"}};
@@ -57,6 +61,8 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"material.rough", material_rough},
                                 {"material.conductor", material_conductor},
                                 {"material.dielectric", material_dielectric},
+                                {"material.smooth", material_smooth},
+                                {"material.mirror", material_mirror},
                                 {"mesh", mesh},
                                 {"entity", entity},
                                 {"transform", transform},

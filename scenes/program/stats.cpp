@@ -11,7 +11,7 @@ namespace metamer {
 namespace {
 
 // In the order of SystemId.
-constexpr std::array system_names = {"camera_rays", "intersect", "sort",     "surface", "emission",  "light_sample",
+constexpr std::array system_names = {"camera_rays", "intersect", "sort",     "surface", "media", "emission",  "light_sample",
                                      "shade",       "shadow",    "roulette", "nodes",   "accumulate"};
 static_assert(system_names.size() == system_count);
 
