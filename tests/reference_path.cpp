@@ -10,6 +10,7 @@
 #include "systems/bsdf/limits.h"
 #include "systems/bsdf/reference.h"
 #include "tests/reference_lights.h"
+#include "tests/reference_media.h"
 
 namespace metamer {
 namespace {
@@ -53,62 +54,20 @@ struct Tracer {
     return frame;
   }
 
-  // What the ray is inside of, in the order of entering. `fills`: which of it fills the space.
-  using Media = std::vector<uint32_t>;
-  uint32_t fills(const Media& media) const {
-    uint32_t top = 0;
-    for (const uint32_t medium : media)
-      if (world.media.priority[medium] >= world.media.priority[top]) top = medium;
-    return top;
-  }
-  double transmittance(uint32_t medium, double lambda_nm, double distance) const {
-    const double kappa = world.spectra.value(world.media.kappa[medium], lambda_nm);
-    return kappa > 0 ? std::exp(-4 * std::numbers::pi * kappa / (lambda_nm * 1e-9) * distance) : 1;
-  }
-  Media camera_media() const {
-    Media media;
-    for (const uint32_t pair : {world.camera_media[1], world.camera_media[0]})
-      for (const uint32_t medium : {pair >> 16, pair & largest_medium})
-        if (medium != 0) media.push_back(medium);
-    return media;
-  }
-  void attenuate(const Media& media, const Spectrum4& lambda_nm, double distance, Spectrum4& light) const {
-    for (size_t j = 0; j < 4; ++j) light[j] *= transmittance(fills(media), lambda_nm[j], distance);
-  }
-  // The medium of the surface, or 0.
-  uint32_t medium_of(uint32_t object) const {
-    const auto kind = static_cast<ShadeKind>(world.objects.shade_kind[object]);
-    const bool enters = kind == ShadeKind::dielectric || kind == ShadeKind::rough_dielectric;
-    return enters ? world.dielectric.medium[world.objects.material[object]] : 0;
-  }
-  // Behind the surface, for a ray along `direction`.
-  Media crossed(const Media& media, const ReferenceHit& hit, const Vector& direction) const {
-    Media result = media;
-    const uint32_t medium = medium_of(hit.object);
-    if (medium == 0) return result;
-    if (glm::dot(direction, hit.outside) < 0) {
-      result.push_back(medium);
-    } else {
-      const auto last = std::find(result.rbegin(), result.rend(), medium);
-      if (last != result.rend()) result.erase(std::next(last).base());
-    }
-    return result;
-  }
-
   // Radiance that arrives at `origin` against `direction` after at most `events` scatterings. `sees_lights`: area
   // lights count where they are hit, not having been sampled before; `sees_sky`: so does the environment. `together`:
   // four wavelengths on one way.
-  Spectrum4 radiance(const Vector& origin, const Vector& direction, Media media, const Spectrum4& lambda_nm,
+  Spectrum4 radiance(const Vector& origin, const Vector& direction, ReferenceMedia media, const Spectrum4& lambda_nm,
                      bool together, uint32_t events, bool sees_lights, bool sees_sky, uint32_t mask) {
     const ReferenceHit hit = scene.intersect(origin, direction, mask);
     if (hit.object == no_index) {
       Spectrum4 sky = sees_sky ? reference_environment(world, direction, lambda_nm) : Spectrum4{};
       if (sees_lights) sky = plus(sky, reference_disks(world, direction, lambda_nm));
-      attenuate(media, lambda_nm, infinity, sky);
+      attenuate(world, media, lambda_nm, infinity, sky);
       return sky;
     }
     // It comes out of what it never went into: it has been inside all the time.
-    const uint32_t left = glm::dot(direction, hit.outside) > 0 ? medium_of(hit.object) : 0;
+    const uint32_t left = glm::dot(direction, hit.outside) > 0 ? medium_of(world, hit.object) : 0;
     if (left != 0 && std::find(media.begin(), media.end(), left) == media.end()) media.insert(media.begin(), left);
     Spectrum4 sum{};
     if (sees_lights && hit.light != no_index) {
@@ -117,11 +76,11 @@ struct Tracer {
         sum = reference_emission(world, row, glm::dot(direction, hit.outside), lambda_nm);
     }
     if (events > 0) sum = plus(sum, scatter(hit, direction, media, lambda_nm, together, events));
-    attenuate(media, lambda_nm, hit.t, sum);
+    attenuate(world, media, lambda_nm, hit.t, sum);
     return sum;
   }
 
-  Spectrum4 scatter(const ReferenceHit& hit, const Vector& direction, const Media& media, const Spectrum4& lambda_nm,
+  Spectrum4 scatter(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media, const Spectrum4& lambda_nm,
                     bool together, uint32_t events) {
     const auto kind = static_cast<ShadeKind>(world.objects.shade_kind[hit.object]);
     const uint32_t row = world.objects.material[hit.object];
@@ -159,7 +118,7 @@ struct Tracer {
         kind == ShadeKind::smooth_conductor
             ? reference::Roughness{}
             : reference::Roughness{world.conductor.alpha_x[row], world.conductor.alpha_y[row]};
-    const uint32_t around = fills(media);
+    const uint32_t around = fills(world, media);
     const reference::ConductorOptics optics{relative(world.conductor.eta[row], around, lambda_nm),
                                             relative(world.conductor.kappa[row], around, lambda_nm),
                                             world.conductor.schlick[row] != 0};
@@ -179,9 +138,9 @@ struct Tracer {
     return result;
   }
 
-  reference::ThinOptics thin_optics(uint32_t row, const Media& media, const Spectrum4& lambda_nm) const {
+  reference::ThinOptics thin_optics(uint32_t row, const ReferenceMedia& media, const Spectrum4& lambda_nm) const {
     const DielectricColumns& table = world.dielectric;
-    const uint32_t around = table.is_absolute[row] != 0 ? fills(media) : 0;
+    const uint32_t around = table.is_absolute[row] != 0 ? fills(world, media) : 0;
     reference::ThinOptics optics;
     optics.eta = relative(table.eta[row], around, lambda_nm);
     optics.kappa = relative(table.kappa[row], around, lambda_nm);
@@ -195,12 +154,12 @@ struct Tracer {
   }
 
   // A boundary that light crosses, smooth or rough.
-  Spectrum4 enter(const ReferenceHit& hit, const Vector& direction, const Media& media, const Spectrum4& lambda_nm,
+  Spectrum4 enter(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media, const Spectrum4& lambda_nm,
                   bool together, uint32_t events) {
     const DielectricColumns& table = world.dielectric;
     const uint32_t row = world.objects.material[hit.object], medium = table.medium[row];
-    const Media behind = crossed(media, hit, direction);
-    const uint32_t before = fills(media), after = fills(behind);
+    const ReferenceMedia behind = crossed(world, media, hit, direction);
+    const uint32_t before = fills(world, media), after = fills(world, behind);
     if (medium != 0 && before == after)  // it fills the space on neither side: nothing happens
       return radiance(hit.position, direction, behind, lambda_nm, together, events - 1, true, true, visible_to_bounces);
     const uint32_t around = medium == 0 ? 0 : after == medium ? before : after;
@@ -228,7 +187,7 @@ struct Tracer {
   }
 
   // Each wavelength goes its own way from here on.
-  Spectrum4 disperse(const ReferenceHit& hit, const Vector& direction, const Media& media, const Spectrum4& lambda_nm,
+  Spectrum4 disperse(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media, const Spectrum4& lambda_nm,
                      uint32_t events) {
     Spectrum4 result;
     for (size_t j = 0; j < 4; ++j) {
@@ -240,7 +199,7 @@ struct Tracer {
   }
 
   template <class Evaluate>
-  Spectrum4 direct(const ReferenceHit& hit, const LocalFrame& frame, const Media& media, const Spectrum4& lambda_nm,
+  Spectrum4 direct(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media, const Spectrum4& lambda_nm,
                    const Evaluate& evaluate) {
     Spectrum4 sum{};
     for (const uint32_t light : summed) sum = plus(sum, light_from(hit, frame, media, lambda_nm, evaluate, light, 1));
@@ -253,7 +212,7 @@ struct Tracer {
   }
 
   template <class Evaluate>
-  Spectrum4 light_from(const ReferenceHit& hit, const LocalFrame& frame, const Media& media,
+  Spectrum4 light_from(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
                        const Spectrum4& lambda_nm, const Evaluate& evaluate, uint32_t light, double count) {
     const ReferenceLightPoint sample = reference_light_point(world.lights[light], hit.position, random);
     if (!(sample.factor > 0)) return {};
@@ -264,25 +223,25 @@ struct Tracer {
       return {};
     Spectrum4 result = reference_radiance(world, world.lights[light], lambda_nm);
     for (size_t j = 0; j < 4; ++j) result[j] *= f_cos[j] * sample.factor * count;
-    attenuate(next_media(media, hit, frame.came, sample.direction), lambda_nm, sample.distance, result);
+    attenuate(world, next_media(media, hit, frame.came, sample.direction), lambda_nm, sample.distance, result);
     return result;
   }
 
   template <class Evaluate>
-  Spectrum4 sky_through_everything(const ReferenceHit& hit, const LocalFrame& frame, const Media& media,
+  Spectrum4 sky_through_everything(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
                                    const Spectrum4& lambda_nm, const Evaluate& evaluate) {
     const Vector direction = reference_direction(random);
     Spectrum4 result = reference_environment(world, direction, lambda_nm);
     const Spectrum4 f_cos = evaluate(frame.in(direction));
     for (size_t j = 0; j < 4; ++j) result[j] *= f_cos[j] * 4 * std::numbers::pi;
-    attenuate(next_media(media, hit, frame.came, direction), lambda_nm, infinity, result);
+    attenuate(world, next_media(media, hit, frame.came, direction), lambda_nm, infinity, result);
     return result;
   }
 
   // A smooth boundary: one of its two lobes by chance, or without chance each that there is. `sample` reflects for
   // small random numbers.
   template <class Sample>
-  Spectrum4 branch(const ReferenceHit& hit, const LocalFrame& frame, const Media& media, const Sample& sample,
+  Spectrum4 branch(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media, const Sample& sample,
                    const Spectrum4& lambda_nm, bool together, uint32_t events) {
     if (is_path) return go_on(hit, frame, media, sample(random()), lambda_nm, together, events);
     Spectrum4 sum{};
@@ -296,12 +255,12 @@ struct Tracer {
   }
 
   // Of a ray that leaves the surface along `direction`.
-  Media next_media(const Media& media, const ReferenceHit& hit, const Vector& came, const Vector& direction) const {
+  ReferenceMedia next_media(const ReferenceMedia& media, const ReferenceHit& hit, const Vector& came, const Vector& direction) const {
     const bool crosses = glm::dot(came, hit.outside) * glm::dot(direction, hit.outside) > 0;
-    return crosses ? crossed(media, hit, direction) : media;
+    return crosses ? crossed(world, media, hit, direction) : media;
   }
 
-  Spectrum4 go_on(const ReferenceHit& hit, const LocalFrame& frame, const Media& media, const BsdfSample& sample,
+  Spectrum4 go_on(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media, const BsdfSample& sample,
                   const Spectrum4& lambda_nm, bool together, uint32_t events) {
     if (!(sample.pdf > 0)) return {};
     if (sample.delta && world.settings.integrator == Integrator::local) return {};
@@ -349,7 +308,7 @@ struct Tracer {
       origin += read3(camera.lens_x) * u + read3(camera.lens_y) * v;
       direction = glm::normalize(focus - origin);
     }
-    return radiance(origin, direction, camera_media(), lambda_nm, true, world.settings.max_depth, true, true,
+    return radiance(origin, direction, camera_media(world), lambda_nm, true, world.settings.max_depth, true, true,
                     visible_to_camera);
   }
 
