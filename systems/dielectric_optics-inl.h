@@ -55,6 +55,7 @@ HWY_INLINE DielectricOptics dielectric_optics(const World& world, const ShadeStr
     const VU around = hn::IfThenElseZero(uint_mask(crossing.followed), crossing.outside);
     make_relative(world, around, lambda_nm, optics.eta);
     for (int j = 0; j < 4; ++j) optics.eta[j] = hn::IfThenElse(crossing.passed, splat(1.0f), optics.eta[j]);
+    optics.schlick = hn::AndNot(crossing.passed, optics.schlick);  // it reflects at grazing angles whatever the index
     parts = hn::AndNot(crossing.passed, hn::Or(parts, is_set(world.media.dispersive, as_index(around))));
     if (optics.some_opaque) {
       make_relative(world, around, lambda_nm, optics.kappa);

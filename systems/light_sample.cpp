@@ -221,7 +221,8 @@ void light_sample_lanes(const World& world, uint32_t depth, ShadeKind kind, Shad
 void light_sample_kernel(const World& world, uint32_t depth, ShadeStream& shade) {
   for (const ShadeKind kind : rough_kinds) {
     const Group& group = shade.groups[static_cast<size_t>(kind)];
-    for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) light_sample_lanes(world, depth, kind, shade, i);
+    for (size_t i = group.begin; i < group.padded_end(); i += lane_count())
+      light_sample_lanes(world, depth, kind, shade, i);
   }
 }
 

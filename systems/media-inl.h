@@ -131,8 +131,8 @@ HWY_INLINE void store_next_media(const MediaCrossing& crossing, const Vec3& dire
   const VF zero = hn::Zero(FloatTag());
   const VF along = dot(direction, load(shade.normal, i));
   const MF goes_out = hn::Gt(along, zero);
-  const MF crosses = hn::And(crossing.followed, hn::Or(hn::And(crossing.inside, goes_out),
-                                                       hn::AndNot(crossing.inside, hn::Lt(along, zero))));
+  const MF crosses = hn::And(
+      crossing.followed, hn::Or(hn::And(crossing.inside, goes_out), hn::AndNot(crossing.inside, hn::Lt(along, zero))));
   store_media(if_then_else(crosses, crossing.after, crossing.before), shade.next_media, i);
   const MF full = hn::AndNot(crossing.inside, hn::And(crosses, is_medium(crossing.before.entry[media_stack_size - 1])));
   if (hn::AllFalse(FloatTag(), full)) return;

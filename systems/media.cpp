@@ -34,8 +34,7 @@ void media_kernel(const World& world, ShadeStream& shade) {
     load(shade.lambda_nm, i, lambda_nm);
     const VF distance = i < miss_begin ? load(shade.distance, i) : hn::Inf(FloatTag());
     medium_transmittance(world, load_media(shade.media, i).entry[0], lambda_nm, distance, passes);
-    for (size_t j = 0; j < 4; ++j)
-      store(hn::Mul(load(shade.throughput[j], i), passes[j]), shade.throughput[j], i);
+    for (size_t j = 0; j < 4; ++j) store(hn::Mul(load(shade.throughput[j], i), passes[j]), shade.throughput[j], i);
   }
 }
 

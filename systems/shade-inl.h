@@ -38,8 +38,8 @@ HWY_INLINE Vec3 ray_origin(const ShadeStream& shade, size_t i, const Vec3& direc
   return mul_add(normal, offset, load(shade.position, i));
 }
 
-// The light sample's share against the BSDF's chance to have found the light (power heuristic; lights of pdf 0 it cannot
-// find).
+// The light sample's share against the BSDF's chance to have found the light (power heuristic; lights of pdf 0 it
+// cannot find).
 HWY_INLINE VF light_sample_weight(const ShadeStream& shade, size_t i, VF pdf_bsdf) {
   const VF light_pdf = load(shade.light_pdf, i);
   const MF can_be_found = hn::Gt(light_pdf, hn::Zero(FloatTag()));

@@ -22,7 +22,8 @@ HWY_INLINE void attenuate_light(const World& world, const ShadeStream& shade, si
   for (int j = 0; j < 4; ++j) f_cos[j] = hn::Mul(f_cos[j], passes[j]);
 }
 
-void shade_rough_dielectric_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
+void shade_rough_dielectric_kernel(const World& world, const ShadeWork& work, ShadeStream& shade,
+                                   ShadowStream& shadow) {
   const Group& group = group_of(shade, ShadeKind::rough_dielectric);
   for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
     const VI row = material_row(shade, i);

@@ -80,8 +80,8 @@ struct Tracer {
     return sum;
   }
 
-  Spectrum4 scatter(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media, const Spectrum4& lambda_nm,
-                    bool together, uint32_t events) {
+  Spectrum4 scatter(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media,
+                    const Spectrum4& lambda_nm, bool together, uint32_t events) {
     const auto kind = static_cast<ShadeKind>(world.objects.shade_kind[hit.object]);
     const uint32_t row = world.objects.material[hit.object];
     const LocalFrame frame = frame_of(hit, direction);
@@ -97,22 +97,21 @@ struct Tracer {
     }
     if (kind == ShadeKind::diffuse) {
       const Spectrum4 albedo = reference_spectrum(world, world.diffuse.reflectance[row], lambda_nm);
-      const Spectrum4 lit =
-          direct(hit, frame, media, lambda_nm,
-                 [&](const Direction& wi) { return reference::eval_diffuse(wo, albedo, wi).f_cos; });
+      const Spectrum4 lit = direct(hit, frame, media, lambda_nm,
+                                   [&](const Direction& wi) { return reference::eval_diffuse(wo, albedo, wi).f_cos; });
       const double u = random(), v = random();
-      return plus(lit, go_on(hit, frame, media, reference::sample_diffuse(wo, albedo, u, v), lambda_nm, together, events));
+      return plus(lit,
+                  go_on(hit, frame, media, reference::sample_diffuse(wo, albedo, u, v), lambda_nm, together, events));
     }
     if (kind == ShadeKind::rough) {
       const reference::RoughOptics optics{reference_spectrum(world, world.rough.kd[row], lambda_nm),
                                           reference_spectrum(world, world.rough.ks[row], lambda_nm),
                                           world.rough.shininess[row], world.rough.normalized[row] != 0};
-      const Spectrum4 lit =
-          direct(hit, frame, media, lambda_nm,
-                 [&](const Direction& wi) { return reference::eval_rough(wo, optics, wi).f_cos; });
+      const Spectrum4 lit = direct(hit, frame, media, lambda_nm,
+                                   [&](const Direction& wi) { return reference::eval_rough(wo, optics, wi).f_cos; });
       const double choice = random(), u = random(), v = random();
-      return plus(lit,
-                  go_on(hit, frame, media, reference::sample_rough(wo, optics, choice, u, v), lambda_nm, together, events));
+      return plus(lit, go_on(hit, frame, media, reference::sample_rough(wo, optics, choice, u, v), lambda_nm, together,
+                             events));
     }
     const reference::Roughness roughness =
         kind == ShadeKind::smooth_conductor
@@ -127,8 +126,8 @@ struct Tracer {
       lit = direct(hit, frame, media, lambda_nm,
                    [&](const Direction& wi) { return reference::eval_conductor(wo, roughness, optics, wi).f_cos; });
     const double u = random(), v = random();
-    return plus(
-        lit, go_on(hit, frame, media, reference::sample_conductor(wo, roughness, optics, u, v), lambda_nm, together, events));
+    return plus(lit, go_on(hit, frame, media, reference::sample_conductor(wo, roughness, optics, u, v), lambda_nm,
+                           together, events));
   }
 
   // An index against that of a medium.
@@ -154,8 +153,8 @@ struct Tracer {
   }
 
   // A boundary that light crosses, smooth or rough.
-  Spectrum4 enter(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media, const Spectrum4& lambda_nm,
-                  bool together, uint32_t events) {
+  Spectrum4 enter(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media,
+                  const Spectrum4& lambda_nm, bool together, uint32_t events) {
     const DielectricColumns& table = world.dielectric;
     const uint32_t row = world.objects.material[hit.object], medium = table.medium[row];
     const ReferenceMedia behind = crossed(world, media, hit, direction);
@@ -187,8 +186,8 @@ struct Tracer {
   }
 
   // Each wavelength goes its own way from here on.
-  Spectrum4 disperse(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media, const Spectrum4& lambda_nm,
-                     uint32_t events) {
+  Spectrum4 disperse(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media,
+                     const Spectrum4& lambda_nm, uint32_t events) {
     Spectrum4 result;
     for (size_t j = 0; j < 4; ++j) {
       Spectrum4 alone;
@@ -199,8 +198,8 @@ struct Tracer {
   }
 
   template <class Evaluate>
-  Spectrum4 direct(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media, const Spectrum4& lambda_nm,
-                   const Evaluate& evaluate) {
+  Spectrum4 direct(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
+                   const Spectrum4& lambda_nm, const Evaluate& evaluate) {
     Spectrum4 sum{};
     for (const uint32_t light : summed) sum = plus(sum, light_from(hit, frame, media, lambda_nm, evaluate, light, 1));
     if (!chosen.empty()) {
@@ -255,13 +254,14 @@ struct Tracer {
   }
 
   // Of a ray that leaves the surface along `direction`.
-  ReferenceMedia next_media(const ReferenceMedia& media, const ReferenceHit& hit, const Vector& came, const Vector& direction) const {
+  ReferenceMedia next_media(const ReferenceMedia& media, const ReferenceHit& hit, const Vector& came,
+                            const Vector& direction) const {
     const bool crosses = glm::dot(came, hit.outside) * glm::dot(direction, hit.outside) > 0;
     return crosses ? crossed(world, media, hit, direction) : media;
   }
 
-  Spectrum4 go_on(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media, const BsdfSample& sample,
-                  const Spectrum4& lambda_nm, bool together, uint32_t events) {
+  Spectrum4 go_on(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
+                  const BsdfSample& sample, const Spectrum4& lambda_nm, bool together, uint32_t events) {
     if (!(sample.pdf > 0)) return {};
     if (sample.delta && world.settings.integrator == Integrator::local) return {};
     // Where only the light sources light rough surfaces, the sky is the only one not sampled.

@@ -11,8 +11,8 @@ namespace metamer {
 namespace {
 
 // In the order of SystemId.
-constexpr std::array system_names = {"camera_rays", "intersect", "sort",     "surface", "media", "emission",  "light_sample",
-                                     "shade",       "shadow",    "roulette", "nodes",   "accumulate"};
+constexpr std::array system_names = {"camera_rays",  "intersect", "sort",   "surface",  "media", "emission",
+                                     "light_sample", "shade",     "shadow", "roulette", "nodes", "accumulate"};
 static_assert(system_names.size() == system_count);
 
 double ratio(double a, double b) { return b > 0 ? a / b : 0; }

@@ -1,15 +1,15 @@
 // The rough boundary of a transparent medium: GGX microfacets that reflect and refract, four wavelengths at a time.
-// Conventions and D, Lambda, G as in ggx-inl.h; scalar double twin: reference.h. With eta = n_i / n_o the relative index
-// seen from wo's side, and for wi on the other side m along +-(wo + eta wi):
+// Conventions and D, Lambda, G as in ggx-inl.h; scalar double twin: reference.h. With eta = n_i / n_o the relative
+// index seen from wo's side, and for wi on the other side m along +-(wo + eta wi):
 //   f = D G F / (4 |cos(theta_i) cos(theta_o)|)                                         on wo's side
 //   f = D G (1 - F) |wi.m wo.m| / (|cos(theta_i) cos(theta_o)| (wo.m + eta wi.m)^2)     on the other
 // Walter, Marschner, Li, Torrance, "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007, equations 20
 // and 21, for radiance: f(wo, wi) / n_o^2 = f(wi, wo) / n_i^2. Light that would meet a second facet is lost.
 //
 // A facet is drawn among those visible from wo, then one of its two directions. Reflection goes the same way on all
-// wavelengths; refraction, where the indices differ, takes the hero alone, as in dielectric-inl.h. A light's direction is
-// weighed on every wavelength all the same, each by its own facet, and each against the chance that it would have had as
-// the hero: over all heroes the two ways to find the light complement each other on each wavelength.
+// wavelengths; refraction, where the indices differ, takes the hero alone, as in dielectric-inl.h. A light's direction
+// is weighed on every wavelength all the same, each by its own facet, and each against the chance that it would have
+// had as the hero: over all heroes the two ways to find the light complement each other on each wavelength.
 #if defined(METAMER_SYSTEMS_BSDF_ROUGH_DIELECTRIC_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef METAMER_SYSTEMS_BSDF_ROUGH_DIELECTRIC_INL_H_
 #undef METAMER_SYSTEMS_BSDF_ROUGH_DIELECTRIC_INL_H_
@@ -77,19 +77,18 @@ HWY_INLINE void eval_refraction(const GgxLobe& lobe, const DielectricOptics& opt
   const VF cos_theta = hn::Div(wo_h, hn::Sqrt(hn::Max(dot(h, h), splat(1e-30f))));
   const FacetChoice choice = facet_choice(optics, inside, cos_theta, j, any_dispersive);
   const VF q = stretched_square(lobe, h);
-  const VF facets = hn::Div(hn::Mul(hn::Mul(splat(4.0f), lobe.d_scale), hn::Mul(wo_h, wi_h)),
-                            hn::Max(hn::Mul(q, q), splat(1e-37f)));
+  const VF facets =
+      hn::Div(hn::Mul(hn::Mul(splat(4.0f), lobe.d_scale), hn::Mul(wo_h, wi_h)), hn::Max(hn::Mul(q, q), splat(1e-37f)));
   const VF passes = hn::Sub(one, choice.reflectance[j]);
   const VF drawn = hn::IfThenElseZero(hn::Gt(passes, zero), hn::Sub(one, choice.p_reflect));
   f_cos = hn::IfThenElseZero(refracts, hn::Mul(hn::Mul(facets, passes), hn::Mul(hn::Abs(up.z), inv_shadowing)));
-  pdf = hn::IfThenElseZero(refracts,
-                           hn::Mul(hn::Mul(facets, hn::Mul(eta, eta)), hn::Mul(lobe.inv_visible, drawn)));
+  pdf = hn::IfThenElseZero(refracts, hn::Mul(hn::Mul(facets, hn::Mul(eta, eta)), hn::Mul(lobe.inv_visible, drawn)));
 }
 }  // namespace bsdf_detail
 
-// f_cos = f |cos(theta_i)| on both sides, and for each wavelength the pdf with which sample_rough_dielectric finds wi for
-// it. Nothing of `optics` is opaque. Largest relative errors against double for alpha >= 0.02 and |eta - 1| >= 0.05:
-// f_cos 1e-2, pdf 3e-2, both next to a facet's critical angle, where F is steep.
+// f_cos = f |cos(theta_i)| on both sides, and for each wavelength the pdf with which sample_rough_dielectric finds wi
+// for it. Nothing of `optics` is opaque. Largest relative errors against double for alpha >= 0.02 and |eta - 1| >=
+// 0.05: f_cos 1e-2, pdf 3e-2, both next to a facet's critical angle, where F is steep.
 HWY_INLINE void eval_rough_dielectric(const GgxLobe& lobe, const DielectricOptics& optics, const Vec3& wi, VF f_cos[4],
                                       VF pdf[4]) {
   const FloatTag d;
@@ -134,8 +133,8 @@ struct RoughDielectricSample {
 };
 
 // Draws wi; `choice` takes the direction at the facet that u and v draw, all in [0, 1). Void: a direction on the wrong
-// side of the surface, which meets a second facet. Largest errors against double where eval's hold: wi 1e-4, weight 1e-3,
-// pdf 1e-2 relative (D is steep where alpha is small).
+// side of the surface, which meets a second facet. Largest errors against double where eval's hold: wi 1e-4, weight
+// 1e-3, pdf 1e-2 relative (D is steep where alpha is small).
 HWY_INLINE RoughDielectricSample sample_rough_dielectric(const GgxLobe& lobe, const DielectricOptics& optics, VF choice,
                                                          VF u, VF v) {
   const FloatTag d;

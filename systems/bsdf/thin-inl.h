@@ -34,8 +34,7 @@ struct ThinShares {
 HWY_INLINE ThinShares thin_shares(const ThinOptics& optics, int j, VF cos_theta) {
   const VF zero = hn::Zero(FloatTag()), one = splat(1.0f);
   const VF eta = optics.eta[j];
-  const DielectricBoundary boundary =
-      bsdf_detail::boundary({eta, hn::Div(one, eta)}, cos_theta, optics.schlick);
+  const DielectricBoundary boundary = bsdf_detail::boundary({eta, hn::Div(one, eta)}, cos_theta, optics.schlick);
   const VF f = boundary.reflectance;
   const VF depth = hn::Div(optics.optical_depth[j], hn::Max(boundary.cos_theta_t, splat(1e-6f)));
   const VF t = hn::IfThenElse(hn::Gt(optics.optical_depth[j], zero), exp(hn::Neg(depth)), one);
@@ -51,9 +50,9 @@ HWY_INLINE ThinShares thin_shares(const ThinOptics& optics, int j, VF cos_theta)
 }
 
 struct ThinSample {
-  VF weight[4];     // R / probability or T' / probability
-  VF probability;   // of the lobe that was drawn
-  MF transmitted;   // straight on, else mirrored
+  VF weight[4];    // R / probability or T' / probability
+  VF probability;  // of the lobe that was drawn
+  MF transmitted;  // straight on, else mirrored
 };
 // Draws one of the two lobes; u in [0, 1). All wavelengths go on together: by the mean of R against that of T'.
 HWY_INLINE ThinSample sample_thin(VF cos_theta, const ThinOptics& optics, VF u) {
@@ -72,8 +71,8 @@ HWY_INLINE ThinSample sample_thin(VF cos_theta, const ThinOptics& optics, VF u) 
   sample.transmitted = hn::Ge(u, p_reflect);
   sample.probability = hn::IfThenElse(sample.transmitted, hn::Sub(one, p_reflect), p_reflect);
   for (int j = 0; j < 4; ++j)
-    sample.weight[j] = hn::Div(hn::IfThenElse(sample.transmitted, shares[j].transmitted, shares[j].reflected),
-                               sample.probability);
+    sample.weight[j] =
+        hn::Div(hn::IfThenElse(sample.transmitted, shares[j].transmitted, shares[j].reflected), sample.probability);
   return sample;
 }
 

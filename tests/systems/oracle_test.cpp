@@ -142,7 +142,8 @@ TEST(Oracle, AgreesOnRoughGlassBetweenLampAndFloor) {
   add_walls(b);
   b.add(sphere(0.5f), b.rough_glass(b.named("SF66"), 0.4f, 0.4f), moved(-0.3, -0.4, 0.2));
   b.scene.meshes.push_back(cube_mesh());
-  b.add(mesh(0), b.rough_glass(b.constant(1.5), 0.3f, 0.3f), moved(0.5, -0.3, 0) * turned(30, 1, 1, 0) * stretched(0.5, 0.5, 0.5));
+  b.add(mesh(0), b.rough_glass(b.constant(1.5), 0.3f, 0.3f),
+        moved(0.5, -0.3, 0) * turned(30, 1, 1, 0) * stretched(0.5, 0.5, 0.5));
   add_lamp(b);
   b.light(LightKind::environment, b.named("D65"), 0.003f);
   look(b);
@@ -152,11 +153,11 @@ TEST(Oracle, AgreesOnRoughGlassBetweenLampAndFloor) {
 TEST(Oracle, AgreesOnRoughGlassThatAbsorbs) {
   SceneBuilder b(side, side, 4096, 6);
   add_walls(b);
-  Material frosted = b.rough_glass(b.constant(1.5), 0.25f, 0.6f);
+  Material frosted = b.rough_glass(b.constant(1.5), 0.3f, 0.6f);
   frosted.kappa = b.constant(1e-7);
   frosted.priority = 2;
   b.add(sphere(0.7f), frosted, moved(0, -0.2, 0));
-  b.emit(b.add(sphere(0.2f), b.diffuse(0.2), moved(0, -0.1, 0)), b.named("A"), 0.05f);  // inside
+  b.emit(b.add(sphere(0.2f), b.diffuse(0.2), moved(0, -0.1, 0)), b.named("A"), 0.004f);  // inside
   add_lamp(b);
   look(b);
   expect_agreement(*b.freeze(), 4096, 0.03);
@@ -168,7 +169,8 @@ TEST(Oracle, AgreesOnThinPanesAndPartlyOpaqueMatter) {
   const std::vector<double> nm = {520, 560}, kappa = {0, 2};
   b.add(sphere(0.5f), b.smooth(b.constant(1.6), b.scene.spectra.add_table(nm, kappa, Extend::constant).id),
         moved(-0.4, -0.4, 0));
-  b.add(rectangle(1, 1), b.thin(b.named("SF66"), b.constant(2e-5), 0.002f), moved(0.5, -0.3, 0.3) * turned(40, 0, 1, 0));
+  b.add(rectangle(1, 1), b.thin(b.named("SF66"), b.constant(2e-5), 0.002f),
+        moved(0.5, -0.3, 0.3) * turned(40, 0, 1, 0));
   b.add(sphere(0.3f), b.smooth(b.constant(1e-3), b.constant(50)), moved(0.4, -0.7, -0.2));
   add_lamp(b);
   look(b);

@@ -138,10 +138,11 @@ TEST(NativeMistakes, TypesOfObjects) {
 
 TEST(NativeMistakes, NumbersOutOfRange) {
   EXPECT_EQ(messages_of_material("{\"type\": \"diffuse\",\n\"reflectance\": -0.1}"),
-            "scene.json:3: error: 'reflectance' is the number -0.1; expected a number from 0 to 1\n");
+            "scene.json:3: error: 'reflectance' is the number -0.1; expected a number from 0 to 1 (in material 'm')\n");
   EXPECT_THAT(messages_of_material("{\"type\": \"diffuse\", \"reflectance\": 1.01}"), HasSubstr("from 0 to 1"));
-  EXPECT_THAT(messages_of_material("{\"type\": \"diffuse\",\n\"reflectance\": {\"table\": [[400, 0.5],\n[500, 1.5]]}}"),
-              "scene.json:4: error: 'table[1][1]' is the number 1.5; expected a number from 0 to 1\n");
+  EXPECT_THAT(
+      messages_of_material("{\"type\": \"diffuse\",\n\"reflectance\": {\"table\": [[400, 0.5],\n[500, 1.5]]}}"),
+      "scene.json:4: error: 'table[1][1]' is the number 1.5; expected a number from 0 to 1 (in material 'm')\n");
   EXPECT_THAT(messages_of_material("{\"type\": \"diffuse\", \"reflectance\": {\"rgb\": [0.5, -1, 2]}}"),
               AllOf(HasSubstr("'rgb[1]' is the number -1"), HasSubstr("'rgb[2]' is the number 2")));
   EXPECT_THAT(
@@ -156,6 +157,26 @@ TEST(NativeMistakes, NumbersOutOfRange) {
               HasSubstr("'kappa' is the number -2; expected a number of at least 0"));
   EXPECT_THAT(messages_of_material("{\"type\": \"conductor\", \"metal\": \"Au\", \"roughness\": 1.5}"),
               HasSubstr("'roughness' is the number 1.5; expected a number from 0 to 1"));
+  EXPECT_EQ(messages_of_material("{\"type\": \"smooth\", \"n\": 0, \"kappa\": -1, \"thickness\": 2, \"priority\": 0}"),
+            "scene.json:2: error: 'n' is the number 0; expected a number above 0 (in material 'm')\n"
+            "scene.json:2: error: 'kappa' is the number -1; expected a number of at least 0 (in material 'm')\n"
+            "scene.json:2: error: 'priority' is the number 0; expected a whole number from 1 to 255 (in material 'm')\n"
+            "scene.json:2: error: 'thickness' belongs to 'thin' only (in material 'm')\n");
+  EXPECT_THAT(messages_of_material("{\"type\": \"smooth\", \"metal\": \"Au\", \"kappa\": 1}"),
+              HasSubstr("'metal' and 'kappa' exclude each other"));
+  EXPECT_THAT(messages_of_material("{\"type\": \"smooth\", \"glass\": \"BK7\", \"n\": 1}"),
+              HasSubstr("'glass' and 'n' exclude each other"));
+  EXPECT_THAT(messages_of_material("{\"type\": \"smooth\"}"), HasSubstr("expected 'metal', 'glass' or 'n'"));
+  EXPECT_THAT(messages_of_material("{\"type\": \"dielectric\", \"eta\": 1.5, \"kappa\": 0.5}"),
+              HasSubstr("'kappa' reaches 0.01, where matter is opaque"));
+  EXPECT_THAT(messages_of_material("{\"type\": \"dielectric\", \"eta\": 1.5, \"kappa\": 1e-6, \"thin\": true}"),
+              HasSubstr("lacks the required key 'thickness'"));
+  EXPECT_THAT(messages_of_material("{\"type\": \"dielectric\", \"eta\": 1.5, \"thin\": true, \"roughness\": 0.1}"),
+              HasSubstr("'thin' and 'roughness' exclude each other"));
+  EXPECT_THAT(messages_of_material("{\"type\": \"dielectric\", \"eta\": 1.5, \"thin\": true, \"priority\": 2}"),
+              HasSubstr("'thin' and 'priority' exclude each other"));
+  EXPECT_THAT(messages_of_material("{\"type\": \"dielectric\", \"eta\": 1.5, \"roughness\": -1}"),
+              HasSubstr("'roughness' is the number -1; expected a number from 0 to 1 (in material 'm')"));
   for (const char* fov : {"0", "180", "-45", "1e30", "179.999999999"}) {
     EXPECT_THAT(messages_of_entity("{\"camera\": {\"type\": \"perspective\", \"fov\": " + std::string(fov) + "}}"),
                 HasSubstr("expected a number above 0 and below 180"))

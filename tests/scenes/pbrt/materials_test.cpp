@@ -147,14 +147,13 @@ TEST(PbrtMaterials, ReflectancesAboveOneAreClampedWithAWarning) {
 }
 
 TEST(PbrtMaterials, WhatReplacesTheUnsupportedIsSaidOncePerKind) {
-  const ReadScene read =
-      read_world(std::string("Texture \"wood\" \"spectrum\" \"imagemap\" \"string filename\" \"wood.png\"\n") +
-                 "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere +
-                 "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere +
-                 "Material \"coateddiffuse\" \"rgb reflectance\" [.2 .2 .2] \"float thickness\" 1" + sphere +
-                 "Material \"hair\" \"float eumelanin\" 1" + sphere + "Material \"hair\" \"float eumelanin\" 1" +
-                 sphere +
-                 "Material \"diffuse\" \"texture displacement\" \"wood\" \"string normalmap\" \"n.png\"" + sphere);
+  const ReadScene read = read_world(
+      std::string("Texture \"wood\" \"spectrum\" \"imagemap\" \"string filename\" \"wood.png\"\n") +
+      "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere +
+      "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere +
+      "Material \"coateddiffuse\" \"rgb reflectance\" [.2 .2 .2] \"float thickness\" 1" + sphere +
+      "Material \"hair\" \"float eumelanin\" 1" + sphere + "Material \"hair\" \"float eumelanin\" 1" + sphere +
+      "Material \"diffuse\" \"texture displacement\" \"wood\" \"string normalmap\" \"n.png\"" + sphere);
   EXPECT_TRUE(read.ok);
   EXPECT_THAT(
       read.messages,
