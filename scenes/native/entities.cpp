@@ -58,11 +58,7 @@ class EntityReader {
   void set_components(const PendingEntity& pending) {
     const auto& [entity, object] = pending;
     if (const Json::Value* parent = object.find("parent")) set_parent(entity, *parent);
-    if (const Json::Value* material = object.find("material")) {
-      context_.reader.set_subject(context_.scene.describe(entity));
-      set_material(entity, *material);
-      context_.reader.set_subject({});
-    }
+    if (const Json::Value* material = object.find("material")) set_material(entity, *material);
     if (const Json::Value* value = object.find("geometry"))
       if (const auto geometry = read_geometry(context_, *value)) registry_.set(entity, *geometry);
     if (const Json::Value* value = object.find("light")) set_light(entity, object, *value);
@@ -95,7 +91,9 @@ class EntityReader {
   // A name refers to an entry of "materials", or to an entity that has a material of its own.
   void set_material(Entity entity, const Json::Value& value) {
     if (!value.isString()) {
+      context_.reader.set_subject(context_.scene.describe(entity));
       if (const auto material = read_material(context_, value)) registry_.set(entity, *material);
+      context_.reader.set_subject({});
       return;
     }
     const std::string name = value.asString();

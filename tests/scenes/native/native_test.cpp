@@ -55,31 +55,6 @@ void expect_near(const glm::vec3& a, const glm::vec3& b) {
 
 const std::string every_key = METAMER_SOURCE_DIR "/tests/scenes/native/every_key.json";
 
-TEST(Native, SmoothMatterHasAnIndexAKappaAndAnInside) {
-  const NativeResult r = read(
-      "{\"metamer\": 1, \"units\": \"cm\", \"materials\": {"
-      "\"tea\": {\"type\": \"smooth\", \"glass\": \"water\", \"kappa\": 1e-6, \"priority\": 4},"
-      "\"foil\": {\"type\": \"smooth\", \"metal\": \"Au\", \"thin\": true, \"thickness\": 2},"
-      "\"mirror\": {\"type\": \"mirror\"},"
-      "\"frost\": {\"type\": \"dielectric\", \"eta\": 1.5, \"roughness\": [0.1, 0.3], \"kappa\": 1e-9}}, \"entities\": "
-      "[]}");
-  ASSERT_TRUE(r.ok) << r.messages();
-  const Material tea = r.get<Material>("tea"), foil = r.get<Material>("foil"), frost = r.get<Material>("frost");
-  EXPECT_EQ(tea.kind, MaterialKind::smooth);
-  EXPECT_NEAR(r.scene.spectra.value(tea.eta, 589), 1.333, 1e-3);
-  EXPECT_NEAR(r.scene.spectra.value(tea.kappa, 500), 1e-6, 1e-12);
-  EXPECT_EQ(tea.priority, 4u);
-  EXPECT_EQ(tea.thin, 0u);
-  EXPECT_EQ(foil.thin, 1u);
-  EXPECT_NEAR(foil.thickness, 0.02, 1e-8);
-  EXPECT_GT(r.scene.spectra.value(foil.kappa, 600), 2);
-  EXPECT_EQ(r.get<Material>("mirror").kind, MaterialKind::conductor);
-  EXPECT_EQ(frost.kind, MaterialKind::dielectric);
-  EXPECT_EQ(frost.alpha_x, 0.1f);
-  EXPECT_EQ(frost.alpha_y, 0.3f);
-  EXPECT_EQ(frost.priority, 0u);
-}
-
 TEST(Native, ReadsEveryKey) {
   NativeResult r;
   ASSERT_TRUE(read_scene(every_key, r.scene, r.diagnostics)) << r.messages();
