@@ -40,6 +40,7 @@ Json::Value to_json(const FrameReport& report) {
   json["tile"] = report.tile_size;
   json["samples"] = count(report.samples.total);
   json["invalid_samples"] = count(report.invalid_samples);
+  json["lost_media"] = count(counters.lost_media);
   json["rays"]["camera"] = count(counters.camera_rays);
   json["rays"]["bounce"] = count(counters.bounce_rays);
   json["rays"]["shadow"] = count(counters.shadow_rays);
