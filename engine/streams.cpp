@@ -11,6 +11,11 @@ void take_all(BatchArena& arena, size_t rows, Columns<float, N>& columns) {
   for (float*& column : columns) column = arena.take<float>(rows);
 }
 
+template <size_t N>
+void take_all(BatchArena& arena, size_t rows, Columns<uint32_t, N>& columns) {
+  for (uint32_t*& column : columns) column = arena.take<uint32_t>(rows);
+}
+
 void take_paths(BatchArena& arena, size_t rows, PathStream& s) {
   for_each_column(s, [&](auto*& column) { column = arena.take<std::remove_reference_t<decltype(*column)>>(rows); });
 }
@@ -26,9 +31,11 @@ void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
     *column = arena.take<float>(rows);
   for (uint32_t** column : {&s.material, &s.light, &s.pixel_seed, &s.index, &s.slot})
     *column = arena.take<uint32_t>(rows);
+  take_all(arena, rows, s.media);
+  take_all(arena, rows, s.next_media);
 }
 
-constexpr size_t columns_in_all = 2 * 19 + 3 + (7 * 3 + 4 * 4 + 8 + 5) + (6 + 1 + 4 + 1) + (12 + 2) + 1;
+constexpr size_t columns_in_all = 2 * 21 + 3 + (7 * 3 + 4 * 4 + 8 + 5 + 4) + (6 + 1 + 4 + 1) + (12 + 2) + 1;
 constexpr size_t column_bytes = (sorted_capacity + column_lanes) * sizeof(float) + 2 * column_alignment;
 
 }  // namespace

@@ -2,7 +2,7 @@
 // columns together stay within a core's L2 cache. Nothing here outlives a batch, except the slots, which live
 // until the batch is accumulated.
 //
-// Per path: PathStream 80 bytes, twice (this bounce's and the next one's rays); HitStream 12; ShadeStream 200;
+// Per path: PathStream 88 bytes, twice (this bounce's and the next one's rays); HitStream 12; ShadeStream 216;
 // ShadowStream 48; Slots 56.
 #pragma once
 #include <array>
@@ -23,17 +23,21 @@ enum class ShadeKind : uint32_t {
   smooth_coated,
   rough_coated,
   rough_conductor,
+  rough_dielectric,
   smooth_conductor,
   dielectric,
+  thin_dielectric,
   absorber,
   miss
 };
-inline constexpr uint32_t shade_kind_count = 9;
+inline constexpr uint32_t shade_kind_count = 11;
 // Rough kinds are lit by light samples, smooth kinds only by what lies in the few directions they answer to. A smooth
 // coat does both: its body is rough, its surface mirrors.
-inline constexpr ShadeKind rough_kinds[] = {ShadeKind::diffuse, ShadeKind::rough, ShadeKind::smooth_coated,
-                                            ShadeKind::rough_coated, ShadeKind::rough_conductor};
-inline constexpr ShadeKind smooth_kinds[] = {ShadeKind::smooth_conductor, ShadeKind::dielectric};
+inline constexpr ShadeKind rough_kinds[] = {ShadeKind::diffuse,       ShadeKind::rough,
+                                            ShadeKind::smooth_coated, ShadeKind::rough_coated,
+                                            ShadeKind::rough_conductor, ShadeKind::rough_dielectric};
+inline constexpr ShadeKind smooth_kinds[] = {ShadeKind::smooth_conductor, ShadeKind::dielectric,
+                                             ShadeKind::thin_dielectric};
 
 // Lanes [begin, end) of a sorted stream; begin is a multiple of 16, lanes up to the next multiple are dead.
 struct Group {
@@ -78,6 +82,7 @@ struct PathStream {
   float* eta_scale;              // (n of the first medium / n here)^2 so far: roulette must not see radiance scaling
   uint32_t *pixel_seed, *index;  // the path's key into the low-discrepancy points
   uint32_t* slot;                // its row in Slots
+  Columns<uint32_t, 2> media;    // what the ray starts inside of (see MediumColumns); only where World::has_interiors
 };
 
 template <class Visit>
@@ -91,6 +96,7 @@ void for_each_column(PathStream& s, const Visit& visit) {
   visit(s.pixel_seed);
   visit(s.index);
   visit(s.slot);
+  for (uint32_t*& column : s.media) visit(column);
 }
 
 // Rows [first, first + count) of one stream to the front of another.
@@ -119,6 +125,8 @@ struct ShadeStream {
   Columns<float, 4> lambda_nm, throughput;
   float *pdf_direction, *eta_scale;
   uint32_t *pixel_seed, *index, *slot;
+  Columns<uint32_t, 2> media;  // of the ray that came, where `carries_media`; corrected by `media`
+  bool carries_media = false;
   // Writer: light_sample. Lanes without a light sample have radiance 0.
   Columns<float, 3> light_direction;  // unit, from the vertex
   Columns<float, 4> light_radiance;   // already divided by the pdf
@@ -129,6 +137,9 @@ struct ShadeStream {
   Columns<float, 4> next_weight;     // f cos / pdf
   float* next_pdf;                   // per solid angle; 0 for a delta lobe
   float* next_eta_scale;             // factor on eta_scale: 1 but at a refraction
+  // Writers: `media` (as they were), then the kernels of what light enters.
+  Columns<uint32_t, 2> next_media;
+  uint32_t lost_media = 0;  // counted where a path is inside of more than media_stack_size
 };
 
 // Light samples that are not 0, to be tested for occlusion. Writer: the BSDF kernels.

@@ -55,7 +55,14 @@ void build_coefficients(World& world) {
   give_rough(world);
   index.give(world.conductor.eta);
   index.give(world.conductor.kappa);
+  for (CoatedColumns* coated : {&world.smooth_coated, &world.rough_coated}) {
+    albedo.give(coated->reflectance);
+    index.give(coated->eta);
+  }
   index.give(world.dielectric.eta);
+  index.give(world.dielectric.kappa);
+  index.give(world.media.eta);
+  index.give(world.media.kappa);
   for (LightRow& row : world.lights) light.give(row.spectrum);
 }
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "engine/simd/portable_math.h"
 #include "systems/bsdf/limits.h"
 
@@ -79,7 +82,7 @@ MaterialRow add_rough(const Material& material, World& world) {
 }
 
 MaterialRow add_conductor(const Material& material, World& world) {
-  const bool smooth = material.alpha_x < smooth_alpha && material.alpha_y < smooth_alpha;
+  const bool is_mirror_like = material.alpha_x < smooth_alpha && material.alpha_y < smooth_alpha;
   ConductorColumns& table = world.conductor;
   table.eta.push_back(material.eta);
   table.kappa.push_back(material.kappa);
@@ -87,20 +90,86 @@ MaterialRow add_conductor(const Material& material, World& world) {
   table.alpha_x.push_back(std::max(material.alpha_x, least_alpha));
   table.alpha_y.push_back(std::max(material.alpha_y, least_alpha));
   table.schlick.push_back(material.fresnel == FresnelModel::schlick);
-  if (material.alpha_x != material.alpha_y && !smooth) world.needs_tangents = true;
-  return {smooth ? ShadeKind::smooth_conductor : ShadeKind::rough_conductor,
+  if (material.alpha_x != material.alpha_y && !is_mirror_like) world.needs_tangents = true;
+  return {is_mirror_like ? ShadeKind::smooth_conductor : ShadeKind::rough_conductor,
           static_cast<uint32_t>(table.eta.size() - 1)};
 }
 
+// What is inside of a material that paths follow; equal ones are one medium. 0: it is not followed.
+uint32_t add_medium(const Material& material, World& world) {
+  const bool absorbs = world.spectra.max_value(material.kappa) > 0;
+  const bool is_followed = material.kind == MaterialKind::smooth || material.priority > 0 || absorbs;
+  if (!is_followed || material.thin != 0) return 0;
+  MediumColumns& media = world.media;
+  const uint32_t priority = std::max(material.priority, 1u);
+  for (uint32_t row = 1; row < media.eta.size(); ++row)
+    if (media.eta[row] == material.eta && media.kappa[row] == material.kappa && media.priority[row] == priority)
+      return row;
+  world.has_interiors = true;
+  media.eta.push_back(material.eta);
+  media.kappa.push_back(material.kappa);
+  media.priority.push_back(priority);
+  media.dispersive.push_back(!world.spectra.is_constant(material.eta));
+  return static_cast<uint32_t>(media.eta.size() - 1);
+}
+
 MaterialRow add_dielectric(const Material& material, World& world) {
+  const bool is_smooth = material.alpha_x < smooth_alpha && material.alpha_y < smooth_alpha;
+  const bool is_partly_opaque = world.spectra.max_value(material.kappa) >= double{refracting_kappa};
   DielectricColumns& table = world.dielectric;
   table.eta.push_back(material.eta);
+  table.kappa.push_back(material.kappa);
   table.schlick.push_back(material.fresnel == FresnelModel::schlick);
-  const bool disperses = !world.spectra.is_constant(material.eta);
-  table.dispersive.push_back(disperses);
-  world.branches = std::max(world.branches, disperses ? 5u : 2u);
-  world.disperses = world.disperses || disperses;
-  return {ShadeKind::dielectric, static_cast<uint32_t>(table.eta.size() - 1)};
+  table.dispersive.push_back(!world.spectra.is_constant(material.eta) || is_partly_opaque);
+  table.partly_opaque.push_back(is_partly_opaque);
+  table.medium.push_back(add_medium(material, world));
+  table.alpha_x.push_back(std::max(material.alpha_x, least_alpha));
+  table.alpha_y.push_back(std::max(material.alpha_y, least_alpha));
+  table.thickness.push_back(material.thickness);
+  table.is_absolute.push_back(material.kind == MaterialKind::smooth);
+  world.disperses = world.disperses || table.dispersive.back() != 0;
+  world.branches = std::max(world.branches, table.dispersive.back() != 0 && material.thin == 0 ? 5u : 2u);
+  const uint32_t row = static_cast<uint32_t>(table.eta.size() - 1);
+  if (material.thin != 0) return {ShadeKind::thin_dielectric, row};
+  if (material.alpha_x != material.alpha_y && !is_smooth) world.needs_tangents = true;
+  return {is_smooth ? ShadeKind::dielectric : ShadeKind::rough_dielectric, row};
+}
+
+// Wholly opaque matter is a smooth conductor.
+MaterialRow add_smooth(const Material& material, World& world) {
+  const bool is_opaque = world.spectra.min_value(material.kappa) >= double{refracting_kappa};
+  return is_opaque ? add_conductor(material, world) : add_dielectric(material, world);
+}
+
+// Row 0: what is around a path that is inside of nothing.
+void add_vacuum(MediumColumns& media) {
+  media.eta.push_back(unit_spectrum);
+  media.kappa.push_back(zero_spectrum);
+  media.priority.push_back(0);
+  media.dispersive.push_back(0);
+}
+
+void check_optics(const Scene& scene, Entity entity, const Material& material, Diagnostics& diagnostics) {
+  const auto error = [&](const std::string& what) {
+    diagnostics.error(scene.location(entity), fmt::format("{}: {}", scene.describe(entity), what));
+  };
+  const SpectrumSet& spectra = scene.spectra;
+  if (!(spectra.min_value(material.eta) > 0)) error("its index of refraction is not above 0 at every wavelength");
+  if (spectra.has_negative(material.kappa)) error("its kappa is negative at some wavelength");
+  const float least_width = std::min(material.alpha_x, material.alpha_y);
+  if (!(least_width >= 0)) error(fmt::format("its roughness is {}; expected a number of at least 0", least_width));
+  if (!(material.thickness >= 0 && material.thickness < std::numeric_limits<float>::infinity()))
+    error(fmt::format("its thickness is {} m; expected a number of at least 0", material.thickness));
+  if (material.priority > largest_priority)
+    error(fmt::format("its priority is {}; expected an integer from 0 to {}", material.priority, largest_priority));
+  const bool absorbs = spectra.max_value(material.kappa) > 0;
+  if (material.kind == MaterialKind::dielectric && spectra.max_value(material.kappa) >= double{refracting_kappa})
+    error("its kappa reaches 0.01, where matter is opaque; a dielectric's stays below, 'smooth' may have any");
+  if (material.thin != 0 && std::max(material.alpha_x, material.alpha_y) >= smooth_alpha)
+    error("a thin material has no roughness");
+  if (material.thin != 0 && material.priority > 0) error("a thin material has no inside and takes no priority");
+  if (material.thin != 0 && absorbs && material.thickness == 0) error("a thin material with kappa needs a thickness");
+  if (material.thin == 0 && material.thickness != 0) error("only a thin material has a thickness");
 }
 
 MaterialRow add_material(const Material& material, World& world) {
@@ -109,6 +178,7 @@ MaterialRow add_material(const Material& material, World& world) {
     case MaterialKind::conductor: return add_conductor(material, world);
     case MaterialKind::rough: return add_rough(material, world);
     case MaterialKind::coated: return add_coated(material, world);
+    case MaterialKind::smooth: return add_smooth(material, world);
     case MaterialKind::dielectric: break;
   }
   return add_dielectric(material, world);
@@ -120,13 +190,20 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
   const Registry& registry = scene.registry;
   // Rows are made once per Material component, then every surface points to its row.
   std::vector<MaterialRow> own, by_surface;
+  add_vacuum(world.media);
   registry.each<Material>([&](Entity entity, uint32_t) {
     if (entity.index >= own.size()) own.resize(entity.index + 1);
     const Material material = registry.get<Material>(entity);
     if (material.kind == MaterialKind::rough) check_rough(scene, entity, material, diagnostics);
+    if (material.kind == MaterialKind::conductor || material.kind == MaterialKind::dielectric ||
+        material.kind == MaterialKind::smooth)
+      check_optics(scene, entity, material, diagnostics);
     if (material.kind == MaterialKind::coated && !check_coated(scene, entity, material, diagnostics)) return;
     own[entity.index] = add_material(material, world);
   });
+  if (world.media.eta.size() > largest_medium + 1)
+    diagnostics.error({}, fmt::format("the scene has {} media that paths follow; at most {} are possible",
+                                      world.media.eta.size() - 1, largest_medium));
   Material grey;
   grey.reflectance = world.spectra.add_constant(0.5).id;
   std::optional<MaterialRow> fallback;

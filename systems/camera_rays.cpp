@@ -113,6 +113,8 @@ void camera_rays_kernel(const World& world, std::span<const RayPacket> packets, 
       store(key.pixel_seed, paths.pixel_seed, i);
       store(key.index_reversed, paths.index, i);
       store(slot, paths.slot, i);
+      if (world.has_interiors)
+        for (size_t k = 0; k < 2; ++k) store(splat_u(world.camera_media[k]), paths.media[k], i);
       const auto inside = hn::And(is_within(x, tile.x0, x_end), is_within(y, tile.y0, y_end));
       const VU pixel =
           hn::Add(hn::Mul(hn::Sub(y, splat_u(tile.y0)), splat_u(tile.width())), hn::Sub(x, splat_u(tile.x0)));

@@ -28,6 +28,7 @@ std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
                                             : fmt::format("{} triangles have", world->zero_area_triangles)));
   if (diagnostics.has_errors()) return nullptr;
   build_accelerator(*world);
+  build_camera_media(*world);
   return world;
 }
 

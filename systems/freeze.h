@@ -40,6 +40,10 @@ void build_coefficients(World& world);
 
 void build_camera(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics);
 
+// What the camera's centre is inside of: media that probes along the axes leave without having entered them. Needs the
+// trees. A lens or an orthographic window that stretches across a boundary counts as its centre.
+void build_camera_media(World& world);
+
 // Embree's trees, built on one thread each so that they are the same every time.
 void build_accelerator(World& world);
 

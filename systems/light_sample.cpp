@@ -6,6 +6,7 @@
 #include "engine/sampling/warps-inl.h"
 #include "systems/dimensions.h"
 #include "systems/lights-inl.h"
+#include "systems/media-inl.h"
 #include "systems/systems.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -182,7 +183,7 @@ HWY_INLINE LightSample sample_light(const World& world, const LightFields& light
 
 // What comes of a light that was chosen with `probability`.
 HWY_INLINE void store_light_sample(const World& world, const LightFields& light, const LightSample& sample,
-                                   VF probability, ShadeStream& shade, size_t i) {
+                                   VF probability, ShadeKind kind, ShadeStream& shade, size_t i) {
   VF lambda_nm[4], radiance[4];
   load(shade.lambda_nm, i, lambda_nm);
   light_spectrum(world, light, lambda_nm, radiance);
@@ -194,6 +195,12 @@ HWY_INLINE void store_light_sample(const World& world, const LightFields& light,
   }
   const VF weight = hn::Div(sample.weight, probability);
   for (int j = 0; j < 4; ++j) radiance[j] = hn::Mul(radiance[j], weight);
+  // What lets light in looks into two media: its kernel knows which of them lies before the light.
+  if (world.has_interiors && kind != ShadeKind::rough_dielectric) {
+    VF passes[4];
+    medium_transmittance(world, load_media(shade.media, i).entry[0], lambda_nm, sample.distance, passes);
+    for (int j = 0; j < 4; ++j) radiance[j] = hn::Mul(radiance[j], passes[j]);
+  }
   store(sample.direction, shade.light_direction, i);
   store(sample.distance, shade.light_distance, i);
   store(radiance, shade.light_radiance, i);
@@ -201,20 +208,21 @@ HWY_INLINE void store_light_sample(const World& world, const LightFields& light,
   store(world.settings.shadows ? hn::Mul(sample.pdf, probability) : hn::Zero(FloatTag()), shade.light_pdf, i);
 }
 
-void light_sample_lanes(const World& world, uint32_t depth, ShadeStream& shade, size_t i) {
+void light_sample_lanes(const World& world, uint32_t depth, ShadeKind kind, ShadeStream& shade, size_t i) {
   const PointKey key = {load(shade.pixel_seed, i), load(shade.index, i)};
   const VF choice = sample_1d(key, splat_u(bounce_dimension(depth, light_choice_dimension)));
   VF u, v;
   sample_2d(key, splat_u(bounce_dimension(depth, light_point_dimension)), &u, &v);
   const LightFields light(world, sample_discrete(world.light_choice, choice).index);
   const LightSample sample = sample_light(world, light, load(shade.position, i), u, v);
-  store_light_sample(world, light, sample, light.number(offsetof(LightRow, choice_probability)), shade, i);
+  store_light_sample(world, light, sample, light.number(offsetof(LightRow, choice_probability)), kind, shade, i);
 }
 
 void light_sample_kernel(const World& world, uint32_t depth, ShadeStream& shade) {
   for (const ShadeKind kind : rough_kinds) {
     const Group& group = shade.groups[static_cast<size_t>(kind)];
-    for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) light_sample_lanes(world, depth, shade, i);
+    for (size_t i = group.begin; i < group.padded_end(); i += lane_count())
+      light_sample_lanes(world, depth, kind, shade, i);
   }
 }
 
@@ -225,7 +233,7 @@ void light_towards_kernel(const World& world, uint32_t row, ShadeStream& shade) 
     const Group& group = shade.groups[static_cast<size_t>(kind)];
     for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
       const LightSample sample = sample_light(world, light, load(shade.position, i), zero, zero);
-      store_light_sample(world, light, sample, splat(1.0f), shade, i);
+      store_light_sample(world, light, sample, splat(1.0f), kind, shade, i);
     }
   }
 }

@@ -48,6 +48,8 @@ void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, C
   clock.charge(SystemId::sort);
   surface(world, paths, batch.hits, batch.order, shade);
   clock.charge(SystemId::surface);
+  if (world.has_interiors) media(world, shade);
+  clock.charge(SystemId::media);
   emission(world, shade, batch.slots);
   clock.charge(SystemId::emission);
 }
@@ -98,6 +100,10 @@ void branch_out(const World& world, uint32_t depth, Batch& batch, StageClock& cl
     shade_dielectric(world, depth, static_cast<Branch>(branch), batch.shade);
     push(ShadeKind::dielectric, static_cast<Branch>(branch));
   }
+  for (const Branch branch : {Branch::reflected, Branch::refracted}) {
+    shade_thin_dielectric(world, depth, branch, batch.shade);
+    push(ShadeKind::thin_dielectric, branch);
+  }
 }
 
 // One vertex of every path of the batch. `last` vertices only look for light.
@@ -113,6 +119,7 @@ void trace_vertices(const World& world, uint32_t depth, bool last, Batch& batch,
   weigh_lights(world, {depth, has_lights, true}, batch, clock, counters);
   shade_smooth_conductor(world, shade);
   shade_dielectric(world, depth, Branch::drawn, shade);
+  shade_thin_dielectric(world, depth, Branch::drawn, shade);
   clock.charge(SystemId::shade);
   roulette(depth, shade, batch.next);
   clock.charge(SystemId::roulette);
@@ -140,6 +147,7 @@ void shade_rough_kinds(const World& world, const ShadeWork& work, ShadeStream& s
   shade_smooth_coated(world, work, shade, shadow);
   shade_rough_coated(world, work, shade, shadow);
   shade_rough_conductor(world, work, shade, shadow);
+  shade_rough_dielectric(world, work, shade, shadow);
 }
 
 void trace_path(const World& world, Batch& batch, Counters& counters) {
@@ -166,10 +174,11 @@ void trace_recursive(const World& world, uint32_t depth, Batch& batch, Counters&
 
 void trace_rays(const World& world, uint32_t depth, Batch& batch, Counters& counters) {
   switch (world.settings.integrator) {
-    case Integrator::local: return trace_local(world, batch, counters);
-    case Integrator::recursive: return trace_recursive(world, depth, batch, counters);
-    case Integrator::path: return trace_path(world, batch, counters);
+    case Integrator::local: trace_local(world, batch, counters); break;
+    case Integrator::recursive: trace_recursive(world, depth, batch, counters); break;
+    case Integrator::path: trace_path(world, batch, counters); break;
   }
+  counters.lost_media += std::exchange(batch.shade.lost_media, 0);
 }
 
 uint32_t rays_per_batch(const World& world) {
@@ -188,6 +197,7 @@ void Counters::add(const Counters& other) {
   lanes += other.lanes;
   live_lanes += other.live_lanes;
   invalid_samples += other.invalid_samples;
+  lost_media += other.lost_media;
 }
 
 void trace_tile(const World& world, const TileRect& tile, uint32_t sample_begin, uint32_t sample_end, Batch& batch,

@@ -38,17 +38,22 @@ HWY_INLINE Vec3 ray_origin(const ShadeStream& shade, size_t i, const Vec3& direc
   return mul_add(normal, offset, load(shade.position, i));
 }
 
-// Appends the light sample of lanes that reflect some of it, weighted against the BSDF's chance to have found the
-// light (power heuristic; lights of pdf 0 it cannot find).
-HWY_INLINE void append_shadow_rays(const ShadeStream& shade, size_t i, const VF f_cos[4], VF pdf_bsdf,
-                                   ShadowStream& shadow) {
-  const VF zero = hn::Zero(FloatTag()), one = splat(1.0f);
+// The light sample's share against the BSDF's chance to have found the light (power heuristic; lights of pdf 0 it
+// cannot find).
+HWY_INLINE VF light_sample_weight(const ShadeStream& shade, size_t i, VF pdf_bsdf) {
   const VF light_pdf = load(shade.light_pdf, i);
-  const VF weight = hn::IfThenElse(hn::Gt(light_pdf, zero), power_heuristic(light_pdf, pdf_bsdf), one);
+  const MF can_be_found = hn::Gt(light_pdf, hn::Zero(FloatTag()));
+  return hn::IfThenElse(can_be_found, power_heuristic(light_pdf, pdf_bsdf), splat(1.0f));
+}
+
+// Appends the light sample of lanes that let some of it go to the viewer; `weight` is the sample's share.
+HWY_INLINE void append_weighted_shadow_rays(const ShadeStream& shade, size_t i, const VF f_cos[4], const VF weight[4],
+                                            ShadowStream& shadow) {
+  const VF zero = hn::Zero(FloatTag()), one = splat(1.0f);
   VF contribution[4];
   for (size_t j = 0; j < 4; ++j)
     contribution[j] =
-        hn::Mul(hn::Mul(load(shade.throughput[j], i), load(shade.light_radiance[j], i)), hn::Mul(f_cos[j], weight));
+        hn::Mul(hn::Mul(load(shade.throughput[j], i), load(shade.light_radiance[j], i)), hn::Mul(f_cos[j], weight[j]));
   Vec3 direction = load(shade.light_direction, i);
   const Vec3 origin = ray_origin(shade, i, direction);
   // Aimed anew from where the ray starts: on a wide plane that is far enough off to matter to a lamp close by.
@@ -69,6 +74,19 @@ HWY_INLINE void append_shadow_rays(const ShadeStream& shade, size_t i, const VF 
   append(counts, contribution, shadow.contribution, shadow.size);
   append(counts, load(shade.slot, i), shadow.slot, shadow.size);
   shadow.size += static_cast<uint32_t>(hn::CountTrue(FloatTag(), counts));
+}
+HWY_INLINE void append_shadow_rays(const ShadeStream& shade, size_t i, const VF f_cos[4], VF pdf_bsdf,
+                                   ShadowStream& shadow) {
+  const VF one = light_sample_weight(shade, i, pdf_bsdf);
+  const VF weight[4] = {one, one, one, one};
+  append_weighted_shadow_rays(shade, i, f_cos, weight, shadow);
+}
+// Where each wavelength has its own chance.
+HWY_INLINE void append_shadow_rays(const ShadeStream& shade, size_t i, const VF f_cos[4], const VF pdf_bsdf[4],
+                                   ShadowStream& shadow) {
+  VF weight[4];
+  for (int j = 0; j < 4; ++j) weight[j] = light_sample_weight(shade, i, pdf_bsdf[j]);
+  append_weighted_shadow_rays(shade, i, f_cos, weight, shadow);
 }
 
 // The next direction, in world space; `pdf` 0 for a delta lobe.
@@ -111,6 +129,8 @@ HWY_INLINE void append_ray(MF mask, const ShadeStream& shade, size_t i, const Ne
   append(mask, load(shade.pixel_seed, i), next.pixel_seed, at);
   append(mask, load(shade.index, i), next.index, at);
   append(mask, load(shade.slot, i), next.slot, at);
+  if (shade.carries_media)
+    for (size_t k = 0; k < 2; ++k) append(mask, load(shade.next_media[k], i), next.media[k], at);
   next.size += static_cast<uint32_t>(hn::CountTrue(FloatTag(), mask));
 }
 

@@ -3,7 +3,7 @@
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 // Highway's headers come after foreach_target.
 #include "systems/bsdf/ggx-inl.h"
-#include "systems/shade-inl.h"
+#include "systems/dielectric_optics-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
@@ -16,6 +16,11 @@ HWY_INLINE ConductorOptics conductor_optics(const World& world, const ShadeStrea
   ConductorOptics optics;
   eval_spectrum4(spectra, gather(world.conductor.eta.data(), row), lambda_nm, optics.n);
   eval_spectrum4(spectra, gather(world.conductor.kappa.data(), row), lambda_nm, optics.kappa);
+  if (world.has_interiors) {
+    const VU around = load_media(shade.media, i).entry[0];
+    make_relative(world, around, lambda_nm, optics.n);
+    make_relative(world, around, lambda_nm, optics.kappa);
+  }
   optics.schlick = float_mask(hn::Ne(gather(world.conductor.schlick.data(), row), splat_u(0)));
   return optics;
 }

@@ -177,11 +177,14 @@ HWY_INLINE void carry(const PathStream& paths, VI path, MF live, ShadeStream& sh
   store(gather(paths.pixel_seed, path), shade.pixel_seed, i);
   store(gather(paths.index, path), shade.index, i);
   store(hn::IfThenElse(uint_mask(live), gather(paths.slot, path), splat_u(dead_lane)), shade.slot, i);
+  if (!shade.carries_media) return;
+  for (size_t k = 0; k < 2; ++k) store(gather(paths.media[k], path), shade.media[k], i);
 }
 
 void surface_kernel(const World& world, const PathStream& paths, const HitStream& hits, const uint32_t* order,
                     ShadeStream& shade) {
   const size_t step = lane_count();
+  shade.carries_media = world.has_interiors;
   const uint32_t miss_begin = shade.groups[static_cast<size_t>(ShadeKind::miss)].begin;
   for (size_t i = 0; i < shade.size; i += step) {
     const VU ordered = load(order, i);

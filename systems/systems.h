@@ -23,6 +23,7 @@ enum class SystemId : uint32_t {
   intersect,
   sort,
   surface,
+  media,
   emission,
   light_sample,
   shade,
@@ -31,13 +32,14 @@ enum class SystemId : uint32_t {
   nodes,
   accumulate
 };
-inline constexpr size_t system_count = 11;
+inline constexpr size_t system_count = 12;
 struct Counters {
   double seconds[system_count] = {};
   double embree_seconds = 0;
   uint64_t samples = 0, camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
   uint64_t lanes = 0, live_lanes = 0;  // of the shading streams
   uint64_t invalid_samples = 0;
+  uint64_t lost_media = 0;  // times that a path was inside of more than it can remember
   void add(const Counters& other);
 };
 
@@ -56,6 +58,10 @@ void sort_hits(const World& world, uint32_t size, const HitStream& hits, uint32_
 // Position, normals and how far new rays must keep off the surface; carries the paths' columns along in sorted order.
 void surface(const World& world, const PathStream& paths, const HitStream& hits, const uint32_t* order,
              ShadeStream& shade);
+
+// Where the world has interiors: what a path turns out to have been inside of all the time, and what that absorbed on the
+// way from the vertex before.
+void media(const World& world, ShadeStream& shade);
 
 // Light that the rays ran into, weighted against having been sampled (power heuristic).
 void emission(const World& world, const ShadeStream& shade, Slots& slots);
@@ -78,6 +84,7 @@ void shade_rough(const World& world, const ShadeWork& work, ShadeStream& shade, 
 void shade_smooth_coated(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough_coated(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough_conductor(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
+void shade_rough_dielectric(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 // All of them, one after the other.
 void shade_rough_kinds(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 
@@ -90,6 +97,7 @@ void shade_smooth_conductor(const World& world, ShadeStream& shade);
 // The mirror image in the surface of smooth coats, `reflected`.
 void shade_coat_mirror(const World& world, ShadeStream& shade);
 void shade_dielectric(const World& world, uint32_t depth, Branch branch, ShadeStream& shade);
+void shade_thin_dielectric(const World& world, uint32_t depth, Branch branch, ShadeStream& shade);
 
 // Adds the contributions whose light is in sight; all of them where the scene casts no shadows.
 void shadow(const World& world, const ShadowStream& shadow, Slots& slots, double* embree_seconds);

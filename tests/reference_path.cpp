@@ -4,17 +4,19 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <numbers>
 
 #include "engine/spectrum/observers.h"
+#include "systems/bsdf/limits.h"
 #include "systems/bsdf/reference.h"
 #include "systems/bsdf/reference_coat.h"
 #include "tests/reference_lights.h"
+#include "tests/reference_media.h"
 
 namespace metamer {
 namespace {
 
 using reference::BsdfSample;
-using reference::BsdfValue;
 using reference::Direction;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -37,11 +39,13 @@ struct Tracer {
 
   struct LocalFrame {
     Vector x, y, z;
+    Vector came;  // along the ray that hit
     Direction in(const Vector& v) const { return {glm::dot(x, v), glm::dot(y, v), glm::dot(z, v)}; }
     Vector out(const Direction& v) const { return x * v.x + y * v.y + z * v.z; }
   };
-  static LocalFrame frame_of(const ReferenceHit& hit) {
+  static LocalFrame frame_of(const ReferenceHit& hit, const Vector& came) {
     LocalFrame frame;
+    frame.came = came;
     frame.z = hit.shading;
     Vector along = hit.tangent - frame.z * glm::dot(frame.z, hit.tangent);
     if (!(glm::length(along) > 1e-12))
@@ -54,94 +58,155 @@ struct Tracer {
   // Radiance that arrives at `origin` against `direction` after at most `events` scatterings. `sees_lights`: area
   // lights count where they are hit, not having been sampled before; `sees_sky`: so does the environment. `together`:
   // four wavelengths on one way.
-  Spectrum4 radiance(const Vector& origin, const Vector& direction, const Spectrum4& lambda_nm, bool together,
-                     uint32_t events, bool sees_lights, bool sees_sky, uint32_t mask) {
+  Spectrum4 radiance(const Vector& origin, const Vector& direction, ReferenceMedia media, const Spectrum4& lambda_nm,
+                     bool together, uint32_t events, bool sees_lights, bool sees_sky, uint32_t mask) {
     const ReferenceHit hit = scene.intersect(origin, direction, mask);
     if (hit.object == no_index) {
-      const Spectrum4 sky = sees_sky ? reference_environment(world, direction, lambda_nm) : Spectrum4{};
-      return sees_lights ? plus(sky, reference_disks(world, direction, lambda_nm)) : sky;
+      Spectrum4 sky = sees_sky ? reference_environment(world, direction, lambda_nm) : Spectrum4{};
+      if (sees_lights) sky = plus(sky, reference_disks(world, direction, lambda_nm));
+      attenuate(world, media, lambda_nm, infinity, sky);
+      return sky;
     }
+    // It comes out of what it never went into: it has been inside all the time.
+    const uint32_t left = glm::dot(direction, hit.outside) > 0 ? medium_of(world, hit.object) : 0;
+    if (left != 0 && std::find(media.begin(), media.end(), left) == media.end()) media.insert(media.begin(), left);
     Spectrum4 sum{};
     if (sees_lights && hit.light != no_index) {
       const LightRow& row = world.lights[hit.light];
       if (row.two_sided != 0 || glm::dot(direction, hit.outside) < 0)
         sum = reference_emission(world, row, glm::dot(direction, hit.outside), lambda_nm);
     }
-    if (events == 0) return sum;
-    const Spectrum4 scattered = scatter(hit, direction, lambda_nm, together, events);
-    for (size_t j = 0; j < 4; ++j) sum[j] += scattered[j];
+    if (events > 0) sum = plus(sum, scatter(hit, direction, media, lambda_nm, together, events));
+    attenuate(world, media, lambda_nm, hit.t, sum);
     return sum;
   }
 
-  Spectrum4 scatter(const ReferenceHit& hit, const Vector& direction, const Spectrum4& lambda_nm, bool together,
-                    uint32_t events) {
+  Spectrum4 scatter(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media,
+                    const Spectrum4& lambda_nm, bool together, uint32_t events) {
     const auto kind = static_cast<ShadeKind>(world.objects.shade_kind[hit.object]);
     const uint32_t row = world.objects.material[hit.object];
-    const LocalFrame frame = frame_of(hit);
+    const LocalFrame frame = frame_of(hit, direction);
     const Direction wo = frame.in(-direction);
     if (kind == ShadeKind::absorber) return {};
-    if (kind == ShadeKind::dielectric) {
-      if (together && world.dielectric.dispersive[row] != 0) return disperse(hit, direction, lambda_nm, events);
-      const reference::DielectricOptics optics{reference_spectrum(world, world.dielectric.eta[row], lambda_nm),
-                                               world.dielectric.schlick[row] != 0, false};
+    if (kind == ShadeKind::dielectric || kind == ShadeKind::rough_dielectric)
+      return enter(hit, direction, media, lambda_nm, together, events);
+    if (kind == ShadeKind::thin_dielectric) {
+      const reference::ThinOptics optics = thin_optics(row, media, lambda_nm);
       return branch(
-          hit, frame, [&](double u) { return reference::sample_dielectric(wo, optics, u); }, lambda_nm, together,
+          hit, frame, media, [&](double u) { return reference::sample_thin(wo, optics, u); }, lambda_nm, together,
           events);
     }
     if (kind == ShadeKind::diffuse) {
       const Spectrum4 albedo = reference_spectrum(world, world.diffuse.reflectance[row], lambda_nm);
-      const Spectrum4 lit =
-          direct(hit, frame, lambda_nm, [&](const Direction& wi) { return reference::eval_diffuse(wo, albedo, wi); });
+      const Spectrum4 lit = direct(hit, frame, media, lambda_nm,
+                                   [&](const Direction& wi) { return reference::eval_diffuse(wo, albedo, wi).f_cos; });
       const double u = random(), v = random();
-      return plus(lit, go_on(hit, frame, reference::sample_diffuse(wo, albedo, u, v), lambda_nm, together, events));
+      return plus(lit,
+                  go_on(hit, frame, media, reference::sample_diffuse(wo, albedo, u, v), lambda_nm, together, events));
     }
     if (kind == ShadeKind::rough) {
       const reference::RoughOptics optics{reference_spectrum(world, world.rough.kd[row], lambda_nm),
                                           reference_spectrum(world, world.rough.ks[row], lambda_nm),
                                           world.rough.shininess[row], world.rough.normalized[row] != 0};
-      const Spectrum4 lit =
-          direct(hit, frame, lambda_nm, [&](const Direction& wi) { return reference::eval_rough(wo, optics, wi); });
+      const Spectrum4 lit = direct(hit, frame, media, lambda_nm,
+                                   [&](const Direction& wi) { return reference::eval_rough(wo, optics, wi).f_cos; });
       const double choice = random(), u = random(), v = random();
-      return plus(lit,
-                  go_on(hit, frame, reference::sample_rough(wo, optics, choice, u, v), lambda_nm, together, events));
+      return plus(lit, go_on(hit, frame, media, reference::sample_rough(wo, optics, choice, u, v), lambda_nm, together,
+                             events));
     }
     if (kind == ShadeKind::smooth_coated || kind == ShadeKind::rough_coated)
-      return coated(hit, frame, wo, coat(kind, row, lambda_nm), lambda_nm, together, events);
+      return coated(hit, frame, media, wo, coat(kind, row, lambda_nm), lambda_nm, together, events);
     const reference::Roughness roughness =
         kind == ShadeKind::smooth_conductor
             ? reference::Roughness{}
             : reference::Roughness{world.conductor.alpha_x[row], world.conductor.alpha_y[row]};
-    const reference::ConductorOptics optics{reference_spectrum(world, world.conductor.eta[row], lambda_nm),
-                                            reference_spectrum(world, world.conductor.kappa[row], lambda_nm),
+    const uint32_t around = fills(world, media);
+    const reference::ConductorOptics optics{relative(world.conductor.eta[row], around, lambda_nm),
+                                            relative(world.conductor.kappa[row], around, lambda_nm),
                                             world.conductor.schlick[row] != 0};
     Spectrum4 lit{};
     if (kind == ShadeKind::rough_conductor)
-      lit = direct(hit, frame, lambda_nm,
-                   [&](const Direction& wi) { return reference::eval_conductor(wo, roughness, optics, wi); });
+      lit = direct(hit, frame, media, lambda_nm,
+                   [&](const Direction& wi) { return reference::eval_conductor(wo, roughness, optics, wi).f_cos; });
     const double u = random(), v = random();
-    return plus(
-        lit, go_on(hit, frame, reference::sample_conductor(wo, roughness, optics, u, v), lambda_nm, together, events));
+    return plus(lit, go_on(hit, frame, media, reference::sample_conductor(wo, roughness, optics, u, v), lambda_nm,
+                           together, events));
+  }
+
+  // An index against that of a medium.
+  Spectrum4 relative(uint32_t index, uint32_t around, const Spectrum4& lambda_nm) const {
+    Spectrum4 result = reference_spectrum(world, index, lambda_nm);
+    for (size_t j = 0; j < 4; ++j) result[j] /= world.spectra.value(world.media.eta[around], lambda_nm[j]);
+    return result;
+  }
+
+  reference::ThinOptics thin_optics(uint32_t row, const ReferenceMedia& media, const Spectrum4& lambda_nm) const {
+    const DielectricColumns& table = world.dielectric;
+    const uint32_t around = table.is_absolute[row] != 0 ? fills(world, media) : 0;
+    reference::ThinOptics optics;
+    optics.eta = relative(table.eta[row], around, lambda_nm);
+    optics.kappa = relative(table.kappa[row], around, lambda_nm);
+    optics.schlick = table.schlick[row] != 0;
+    for (size_t j = 0; j < 4; ++j) {
+      const double kappa = world.spectra.value(table.kappa[row], lambda_nm[j]);
+      optics.opaque[j] = kappa >= double{refracting_kappa};
+      optics.optical_depth[j] = 4e9 * std::numbers::pi * kappa / lambda_nm[j] * double{table.thickness[row]};
+    }
+    return optics;
+  }
+
+  // A boundary that light crosses, smooth or rough.
+  Spectrum4 enter(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media,
+                  const Spectrum4& lambda_nm, bool together, uint32_t events) {
+    const DielectricColumns& table = world.dielectric;
+    const uint32_t row = world.objects.material[hit.object], medium = table.medium[row];
+    const ReferenceMedia behind = crossed(world, media, hit, direction);
+    const uint32_t before = fills(world, media), after = fills(world, behind);
+    if (medium != 0 && before == after)  // it fills the space on neither side: nothing happens
+      return radiance(hit.position, direction, behind, lambda_nm, together, events - 1, true, true, visible_to_bounces);
+    const uint32_t around = medium == 0 ? 0 : after == medium ? before : after;
+    const bool parts = table.dispersive[row] != 0 || world.media.dispersive[around] != 0;
+    if (together && parts) return disperse(hit, direction, media, lambda_nm, events);
+    reference::DielectricOptics optics;
+    optics.eta = relative(table.eta[row], around, lambda_nm);
+    optics.kappa = relative(table.kappa[row], around, lambda_nm);
+    optics.schlick = table.schlick[row] != 0;
+    for (size_t j = 0; j < 4; ++j)
+      optics.opaque[j] = world.spectra.value(table.kappa[row], lambda_nm[j]) >= double{refracting_kappa};
+    const LocalFrame frame = frame_of(hit, direction);
+    const Direction wo = frame.in(-direction);
+    if (static_cast<ShadeKind>(world.objects.shade_kind[hit.object]) == ShadeKind::dielectric)
+      return branch(
+          hit, frame, media, [&](double u) { return reference::sample_dielectric(wo, optics, u); }, lambda_nm, together,
+          events);
+    const reference::Roughness roughness{table.alpha_x[row], table.alpha_y[row]};
+    const Spectrum4 lit = direct(hit, frame, media, lambda_nm, [&](const Direction& wi) {
+      return reference::eval_rough_dielectric(wo, roughness, optics, wi).f_cos;
+    });
+    const double choice = random(), u = random(), v = random();
+    return plus(lit, go_on(hit, frame, media, reference::sample_rough_dielectric(wo, roughness, optics, choice, u, v),
+                           lambda_nm, together, events));
   }
 
   // Without chance both: the mirror image, and the body by its own direction.
-  Spectrum4 coated(const ReferenceHit& hit, const LocalFrame& frame, const Direction& wo,
-                   const reference::CoatOptics& optics, const Spectrum4& lambda_nm, bool together, uint32_t events) {
-    const auto evaluate = [&](const Direction& wi) { return reference::eval_coated(wo, optics, wi); };
-    const Spectrum4 lit = direct(hit, frame, lambda_nm, evaluate);
+  Spectrum4 coated(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
+                   const Direction& wo, const reference::CoatOptics& optics, const Spectrum4& lambda_nm, bool together, uint32_t events) {
+    const auto evaluate = [&](const Direction& wi) { return reference::eval_coated(wo, optics, wi).f_cos; };
+    const Spectrum4 lit = direct(hit, frame, media, lambda_nm, evaluate);
     const double choice = random(), u = random(), v = random();
     if (is_path || optics.alpha > 0)
       return plus(lit,
-                  go_on(hit, frame, reference::sample_coated(wo, optics, choice, u, v), lambda_nm, together, events));
+                  go_on(hit, frame, media, reference::sample_coated(wo, optics, choice, u, v), lambda_nm, together, events));
     BsdfSample body = reference::sample_diffuse(wo, {1, 1, 1, 1}, u, v), mirror;
-    body.weight = evaluate(body.wi).f_cos;
+    body.weight = evaluate(body.wi);
     for (double& weight : body.weight) weight /= body.pdf;
     mirror.wi = {-wo.x, -wo.y, wo.z};
     mirror.pdf = 1;
     mirror.delta = true;
     for (size_t j = 0; j < 4; ++j)
       mirror.weight[j] = reference::coat_surface_albedo(optics, optics.eta[j], std::abs(wo.z));
-    return plus(lit, plus(go_on(hit, frame, body, lambda_nm, together, events),
-                          go_on(hit, frame, mirror, lambda_nm, together, events)));
+    return plus(lit, plus(go_on(hit, frame, media, body, lambda_nm, together, events),
+                          go_on(hit, frame, media, mirror, lambda_nm, together, events)));
   }
 
   reference::CoatOptics coat(ShadeKind kind, uint32_t row, const Spectrum4& lambda_nm) const {
@@ -156,77 +221,89 @@ struct Tracer {
   }
 
   // Each wavelength goes its own way from here on.
-  Spectrum4 disperse(const ReferenceHit& hit, const Vector& direction, const Spectrum4& lambda_nm, uint32_t events) {
+  Spectrum4 disperse(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media,
+                     const Spectrum4& lambda_nm, uint32_t events) {
     Spectrum4 result;
     for (size_t j = 0; j < 4; ++j) {
       Spectrum4 alone;
       alone.fill(lambda_nm[j]);
-      result[j] = scatter(hit, direction, alone, false, events)[0];
+      result[j] = scatter(hit, direction, media, alone, false, events)[0];
     }
     return result;
   }
 
   template <class Evaluate>
-  Spectrum4 direct(const ReferenceHit& hit, const LocalFrame& frame, const Spectrum4& lambda_nm,
-                   const Evaluate& evaluate) {
+  Spectrum4 direct(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
+                   const Spectrum4& lambda_nm, const Evaluate& evaluate) {
     Spectrum4 sum{};
-    for (const uint32_t light : summed) sum = plus(sum, light_from(hit, frame, lambda_nm, evaluate, light, 1));
+    for (const uint32_t light : summed) sum = plus(sum, light_from(hit, frame, media, lambda_nm, evaluate, light, 1));
     if (!chosen.empty()) {
       const size_t place = std::min(static_cast<size_t>(random() * double(chosen.size())), chosen.size() - 1);
-      sum = plus(sum, light_from(hit, frame, lambda_nm, evaluate, chosen[place], double(chosen.size())));
+      sum = plus(sum, light_from(hit, frame, media, lambda_nm, evaluate, chosen[place], double(chosen.size())));
     }
-    if (!world.settings.shadows) sum = plus(sum, sky_through_everything(frame, lambda_nm, evaluate));
+    if (!world.settings.shadows) sum = plus(sum, sky_through_everything(hit, frame, media, lambda_nm, evaluate));
     return sum;
   }
 
   template <class Evaluate>
-  Spectrum4 light_from(const ReferenceHit& hit, const LocalFrame& frame, const Spectrum4& lambda_nm,
-                       const Evaluate& evaluate, uint32_t light, double count) {
+  Spectrum4 light_from(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
+                       const Spectrum4& lambda_nm, const Evaluate& evaluate, uint32_t light, double count) {
     const ReferenceLightPoint sample = reference_light_point(world.lights[light], hit.position, random);
     if (!(sample.factor > 0)) return {};
-    const BsdfValue value = evaluate(frame.in(sample.direction));
+    const Spectrum4 f_cos = evaluate(frame.in(sample.direction));
     const double far = std::isinf(sample.distance) ? infinity : sample.distance * (1 - 1e-6);
     if (world.settings.shadows &&
         scene.intersect(hit.position, sample.direction, visible_to_shadows, far).object != no_index)
       return {};
     Spectrum4 result = reference_radiance(world, world.lights[light], lambda_nm);
-    for (size_t j = 0; j < 4; ++j) result[j] *= value.f_cos[j] * sample.factor * count;
+    for (size_t j = 0; j < 4; ++j) result[j] *= f_cos[j] * sample.factor * count;
+    attenuate(world, next_media(media, hit, frame.came, sample.direction), lambda_nm, sample.distance, result);
     return result;
   }
 
   template <class Evaluate>
-  Spectrum4 sky_through_everything(const LocalFrame& frame, const Spectrum4& lambda_nm, const Evaluate& evaluate) {
+  Spectrum4 sky_through_everything(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
+                                   const Spectrum4& lambda_nm, const Evaluate& evaluate) {
     const Vector direction = reference_direction(random);
     Spectrum4 result = reference_environment(world, direction, lambda_nm);
-    const BsdfValue value = evaluate(frame.in(direction));
-    for (size_t j = 0; j < 4; ++j) result[j] *= value.f_cos[j] * 4 * 3.14159265358979323846;
+    const Spectrum4 f_cos = evaluate(frame.in(direction));
+    for (size_t j = 0; j < 4; ++j) result[j] *= f_cos[j] * 4 * std::numbers::pi;
+    attenuate(world, next_media(media, hit, frame.came, direction), lambda_nm, infinity, result);
     return result;
   }
 
   // A smooth boundary: one of its two lobes by chance, or without chance each that there is. `sample` reflects for
   // small random numbers.
   template <class Sample>
-  Spectrum4 branch(const ReferenceHit& hit, const LocalFrame& frame, const Sample& sample, const Spectrum4& lambda_nm,
-                   bool together, uint32_t events) {
-    if (is_path) return go_on(hit, frame, sample(random()), lambda_nm, together, events);
+  Spectrum4 branch(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media, const Sample& sample,
+                   const Spectrum4& lambda_nm, bool together, uint32_t events) {
+    if (is_path) return go_on(hit, frame, media, sample(random()), lambda_nm, together, events);
     Spectrum4 sum{};
     BsdfSample lobes[2] = {sample(0), sample(1 - 1e-15)};
     const size_t count = lobes[0].transmitted == lobes[1].transmitted ? 1 : 2;
     for (size_t lobe = 0; lobe < count; ++lobe) {
       for (double& weight : lobes[lobe].weight) weight *= lobes[lobe].pdf;
-      sum = plus(sum, go_on(hit, frame, lobes[lobe], lambda_nm, together, events));
+      sum = plus(sum, go_on(hit, frame, media, lobes[lobe], lambda_nm, together, events));
     }
     return sum;
   }
 
-  Spectrum4 go_on(const ReferenceHit& hit, const LocalFrame& frame, const BsdfSample& sample,
-                  const Spectrum4& lambda_nm, bool together, uint32_t events) {
+  // Of a ray that leaves the surface along `direction`.
+  ReferenceMedia next_media(const ReferenceMedia& media, const ReferenceHit& hit, const Vector& came,
+                            const Vector& direction) const {
+    const bool crosses = glm::dot(came, hit.outside) * glm::dot(direction, hit.outside) > 0;
+    return crosses ? crossed(world, media, hit, direction) : media;
+  }
+
+  Spectrum4 go_on(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
+                  const BsdfSample& sample, const Spectrum4& lambda_nm, bool together, uint32_t events) {
     if (!(sample.pdf > 0)) return {};
     if (sample.delta && world.settings.integrator == Integrator::local) return {};
     // Where only the light sources light rough surfaces, the sky is the only one not sampled.
     const uint32_t left = is_path || sample.delta ? events - 1 : 0;
-    Spectrum4 result = radiance(hit.position, frame.out(sample.wi), lambda_nm, together, left, sample.delta,
-                                sample.delta || world.settings.shadows, visible_to_bounces);
+    const Vector next = frame.out(sample.wi);
+    Spectrum4 result = radiance(hit.position, next, next_media(media, hit, frame.came, next), lambda_nm, together, left,
+                                sample.delta, sample.delta || world.settings.shadows, visible_to_bounces);
     for (size_t j = 0; j < 4; ++j) result[j] *= sample.weight[j];
     return result;
   }
@@ -266,7 +343,8 @@ struct Tracer {
       origin += read3(camera.lens_x) * u + read3(camera.lens_y) * v;
       direction = glm::normalize(focus - origin);
     }
-    return radiance(origin, direction, lambda_nm, true, world.settings.max_depth, true, true, visible_to_camera);
+    return radiance(origin, direction, camera_media(world), lambda_nm, true, world.settings.max_depth, true, true,
+                    visible_to_camera);
   }
 
   std::array<double, 3> sample_xyz(uint32_t x, uint32_t y) {

@@ -42,13 +42,18 @@ struct Geometry {
                       &Geometry::width, &Geometry::depth, &Geometry::flip_normal);
 };
 
-enum class MaterialKind : uint32_t { diffuse, conductor, dielectric, rough, coated };
+enum class MaterialKind : uint32_t { diffuse, conductor, dielectric, rough, coated, smooth };
 enum class FresnelModel : uint32_t { exact, schlick };
 
-// diffuse: `reflectance`. conductor: `eta`, `kappa`, GGX roughness. dielectric: `eta` inside against the
-// outside, smooth. `alpha_x`, `alpha_y` are GGX slopes' widths (not remapped); below 1e-3 a mirror.
-// rough: diffuse `kd` plus Phong-Blinn `ks`, `shininess` (see systems/bsdf/rough-inl.h); as taught, both in sr^-1 and
-// without a bound, or `normalized`, both albedos.
+inline constexpr uint32_t largest_priority = 255;
+
+// diffuse: `reflectance`. conductor: `eta`, `kappa`, GGX roughness. dielectric: `eta` inside against the outside,
+// `kappa` below refracting_kappa, GGX roughness. `alpha_x`, `alpha_y` are GGX slopes' widths (not remapped); below 1e-3
+// a mirror. smooth: `eta`, `kappa` of any size, on each wavelength a dielectric or a conductor as kappa decides.
+// `priority`: paths keep track of being inside (a dielectric with kappa and anything smooth has 1 at least); `eta` is
+// then against vacuum, and where solids overlap the one of the higher priority fills the space. `thin`: a slab of
+// `thickness` whose two faces are one surface; no inside. rough: diffuse `kd` plus Phong-Blinn `ks`, `shininess` (see
+// systems/bsdf/rough-inl.h); as taught, both in sr^-1 and without a bound, or `normalized`, both albedos.
 // coated: diffuse `reflectance` under a clear coat of index `eta` and one GGX width, alpha_x = alpha_y.
 struct Material {
   MaterialKind kind = MaterialKind::diffuse;
@@ -59,9 +64,13 @@ struct Material {
   SpectrumId kd = 0, ks = 0;
   float shininess = 0;
   uint32_t normalized = 0;  // 1: the reciprocal form that conserves energy
-  static constexpr auto fields = std::make_tuple(
-      &Material::kind, &Material::reflectance, &Material::eta, &Material::kappa, &Material::alpha_x, &Material::alpha_y,
-      &Material::fresnel, &Material::kd, &Material::ks, &Material::shininess, &Material::normalized);
+  uint32_t priority = 0;    // up to largest_priority; 0: not followed; the index is against whatever is around
+  uint32_t thin = 0;
+  float thickness = 0;  // metres; of a thin one with kappa
+  static constexpr auto fields =
+      std::make_tuple(&Material::kind, &Material::reflectance, &Material::eta, &Material::kappa, &Material::alpha_x,
+                      &Material::alpha_y, &Material::fresnel, &Material::kd, &Material::ks, &Material::shininess,
+                      &Material::normalized, &Material::priority, &Material::thin, &Material::thickness);
 };
 
 // The entity whose Material covers this entity's surface. Without a slot (and without a Material of its own) a

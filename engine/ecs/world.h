@@ -54,11 +54,25 @@ struct ConductorColumns {
   Column<float> alpha_x, alpha_y;
   Column<uint32_t> schlick;  // 1: Schlick's approximation
 };
+// Everything that light enters, smooth, rough or thin.
 struct DielectricColumns {
-  Column<uint32_t> eta;  // SpectrumId; inside against outside
+  Column<uint32_t> eta, kappa;  // SpectrumId; eta against vacuum where `medium` is not 0, else against the outside
   Column<uint32_t> schlick;
-  Column<uint32_t> dispersive;  // 1: eta differs between wavelengths
+  Column<uint32_t> dispersive;     // 1: wavelengths part in refraction: eta differs, or some are opaque
+  Column<uint32_t> partly_opaque;  // 1: kappa reaches refracting_kappa on some wavelengths
+  Column<uint32_t> medium;         // row of World::media that is inside; 0: not followed
+  Column<float> alpha_x, alpha_y;  // rough ones
+  Column<float> thickness;         // metres; thin ones
+  Column<uint32_t> is_absolute;    // thin ones: eta is against vacuum
 };
+// What paths remember being inside of. Row 0 is the vacuum, of priority 0; all others have 1 at least.
+struct MediumColumns {
+  Column<uint32_t> eta, kappa;  // SpectrumId
+  Column<uint32_t> priority;    // where solids overlap, the highest fills the space
+  Column<uint32_t> dispersive;
+};
+// A path's media, highest priority first: four rows of 16 bits, the first in the low half of [0].
+inline constexpr uint32_t media_stack_size = 4, largest_medium = 0xffff;
 
 // A light that can be chosen: one triangle or quadric, a point, a direction or a disc of directions, or the
 // environment.
@@ -145,6 +159,8 @@ struct World {
   CoatedColumns smooth_coated, rough_coated;
   ConductorColumns conductor;
   DielectricColumns dielectric;
+  MediumColumns media;
+  uint32_t camera_media[2] = {0, 0};  // the stack that paths start with
   Column<LightRow> lights;
   std::vector<uint32_t> distant_disks;  // the rows of lights of that shape: rays that leave the scene run into them
   Distribution1D light_choice;          // over the rows of lights that are sampled; empty where there is none
@@ -159,6 +175,7 @@ struct World {
   bool needs_tangents = false;  // an anisotropic material is present
   bool has_instances = false;   // some triangles are in their object's space
   bool has_quadrics = false;
+  bool has_interiors = false;  // some material is followed: paths carry their media
   uint64_t zero_area_triangles = 0;
   std::unique_ptr<Accelerator, void (*)(Accelerator*)> accelerator{nullptr, nullptr};
 };

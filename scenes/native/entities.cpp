@@ -91,7 +91,9 @@ class EntityReader {
   // A name refers to an entry of "materials", or to an entity that has a material of its own.
   void set_material(Entity entity, const Json::Value& value) {
     if (!value.isString()) {
+      context_.reader.set_subject(context_.scene.describe(entity));
       if (const auto material = read_material(context_, value)) registry_.set(entity, *material);
+      context_.reader.set_subject({});
       return;
     }
     const std::string name = value.asString();
@@ -176,7 +178,9 @@ void read_materials(SceneContext& context, const Json::Value& materials) {
     const Entity entity = context.scene.registry.create();
     context.scene.registry.set(entity, Source{context.file, context.reader.document().at_key(*it).line});
     name_entity(context, entity, it.name(), *it, true);
+    context.reader.set_subject(fmt::format("material '{}'", printable_text(it.name())));
     if (const auto material = read_material(context, *it)) context.scene.registry.set(entity, *material);
+    context.reader.set_subject({});
   }
 }
 

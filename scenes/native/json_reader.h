@@ -33,7 +33,11 @@ class JsonReader {
  public:
   JsonReader(const JsonDocument& document, Diagnostics& diagnostics) : document_(document), diagnostics_(diagnostics) {}
 
-  void error(const Json::Value& at, const std::string& message) const { diagnostics_.error(document_.at(at), message); }
+  void error(const Json::Value& at, const std::string& message) const {
+    diagnostics_.error(document_.at(at), subject_.empty() ? message : message + " (in " + subject_ + ")");
+  }
+  // Whose mistakes those to come are, for their messages; empty: nobody's in particular.
+  void set_subject(std::string subject) { subject_ = std::move(subject); }
   // "'what' is FOUND; expected EXPECTED".
   void expected(const Json::Value& value, std::string_view what, std::string_view expected) const;
 
@@ -56,6 +60,7 @@ class JsonReader {
  private:
   const JsonDocument& document_;
   Diagnostics& diagnostics_;
+  std::string subject_;
 };
 
 // An object of the format. On construction unknown and missing keys are reported.

@@ -20,7 +20,11 @@ constexpr KeySpec material_coated[] = {{"type", required}, {"reflectance", requi
                                        {"fresnel"}};
 constexpr KeySpec material_conductor[] = {{"type", required}, {"metal"},     {"eta"},
                                           {"kappa"},          {"roughness"}, {"fresnel"}};
-constexpr KeySpec material_dielectric[] = {{"type", required}, {"glass"}, {"eta"}, {"fresnel"}};
+constexpr KeySpec material_dielectric[] = {{"type", required}, {"glass"},    {"eta"},  {"kappa"},    {"roughness"},
+                                           {"fresnel"},        {"priority"}, {"thin"}, {"thickness"}};
+constexpr KeySpec material_smooth[] = {{"type", required}, {"metal"},    {"glass"}, {"n"},        {"kappa"},
+                                       {"fresnel"},        {"priority"}, {"thin"},  {"thickness"}};
+constexpr KeySpec material_mirror[] = {{"type", required}};
 constexpr KeySpec mesh[] = {{"file"}, {"positions"}, {"indices"}, {"normals"}, {"uvs"}};
 constexpr KeySpec entity[] = {{"name"},     {"parent"}, {"transform"}, {"geometry"},
                               {"material"}, {"light"},  {"camera"},    {"visibility"}};
@@ -60,6 +64,8 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"material.coated", material_coated},
                                 {"material.conductor", material_conductor},
                                 {"material.dielectric", material_dielectric},
+                                {"material.smooth", material_smooth},
+                                {"material.mirror", material_mirror},
                                 {"mesh", mesh},
                                 {"entity", entity},
                                 {"transform", transform},

@@ -35,29 +35,71 @@ void read_rough(SceneContext& context, const JsonObject& object, Material& mater
     context.reader.error(object.value(), "a rough material with 'ks' lacks the required key 'shininess'");
 }
 
-void read_conductor(SceneContext& context, const JsonObject& object, Material& material) {
-  constexpr std::string_view ways[] = {"metal", "eta"};
+// One of three ways to say the index: a metal, which brings its kappa along, a glass, or a spectrum called `index`.
+void read_index(SceneContext& context, const JsonObject& object, std::string_view index,
+                std::span<const std::string_view> ways, Material& material) {
   const std::string_view way = object.one_of(ways);
   if (way == "metal") {
     const MetalSpectra metal = read_metal(context, *object.find("metal"));
     material.eta = metal.eta;
     material.kappa = metal.kappa;
     if (object.has("kappa")) context.reader.error(*object.find("kappa"), "'metal' and 'kappa' exclude each other");
-  } else if (way == "eta") {
-    material.eta = read_spectrum(context, *object.find("eta"), "eta", Quantity::eta);
-    if (!object.has("kappa"))
-      context.reader.error(object.value(), "a conductor with 'eta' lacks the required key 'kappa'");
   }
+  if (way == "glass") material.eta = read_glass(context, *object.find("glass"));
+  if (way == index) material.eta = read_spectrum(context, *object.find(index), index, Quantity::eta);
   if (way != "metal" && object.has("kappa"))
     material.kappa = read_spectrum(context, *object.find("kappa"), "kappa", Quantity::kappa);
+}
+
+void read_conductor(SceneContext& context, const JsonObject& object, Material& material) {
+  constexpr std::string_view ways[] = {"metal", "eta"};
+  read_index(context, object, "eta", ways, material);
+  if (object.has("eta") && !object.has("kappa"))
+    context.reader.error(object.value(), "a conductor with 'eta' lacks the required key 'kappa'");
   read_roughness(context, object, material);
+}
+
+// Where light can go inside: how the inside is told from what overlaps it, or that there is none.
+void read_inside(SceneContext& context, const JsonObject& object, Material& material) {
+  material.priority = object.integer("priority", 1, largest_priority, 0);
+  material.thin = object.boolean("thin", false);
+  const bool absorbs = context.scene.spectra.max_value(material.kappa) > 0;
+  if (object.has("thickness")) {
+    if (material.thin == 0) context.reader.error(*object.find("thickness"), "'thickness' belongs to 'thin' only");
+    material.thickness = context.metres(object.number("thickness", positive, 1));
+  } else if (material.thin != 0 && absorbs) {
+    context.reader.error(object.value(), "a thin material with 'kappa' lacks the required key 'thickness'");
+  }
+  if (material.thin != 0 && object.has("priority"))
+    context.reader.error(*object.find("priority"), "'thin' and 'priority' exclude each other: there is no inside");
 }
 
 void read_dielectric(SceneContext& context, const JsonObject& object, Material& material) {
   constexpr std::string_view ways[] = {"glass", "eta"};
-  const std::string_view way = object.one_of(ways);
-  if (way == "glass") material.eta = read_glass(context, *object.find("glass"));
-  if (way == "eta") material.eta = read_spectrum(context, *object.find("eta"), "eta", Quantity::eta);
+  read_index(context, object, "eta", ways, material);
+  if (context.scene.spectra.max_value(material.kappa) >= double{refracting_kappa})
+    context.reader.error(*object.find("kappa"),
+                         "'kappa' reaches 0.01, where matter is opaque; a dielectric's stays below it, the type "
+                         "'smooth' may have any");
+  read_inside(context, object, material);
+  read_roughness(context, object, material);
+  if (material.thin != 0 && std::max(material.alpha_x, material.alpha_y) >= smooth_alpha)
+    context.reader.error(*object.find("roughness"), "'thin' and 'roughness' exclude each other");
+}
+
+void read_smooth(SceneContext& context, const JsonObject& object, Material& material) {
+  constexpr std::string_view ways[] = {"metal", "glass", "n"};
+  read_index(context, object, "n", ways, material);
+  read_inside(context, object, material);
+}
+
+// Reflects everything: the limit of a large kappa.
+Material mirror(SpectrumSet& spectra) {
+  Material material;
+  material.kind = MaterialKind::conductor;
+  material.eta = unit_spectrum;
+  material.kappa = spectra.add_constant(1e8).id;
+  return material;
 }
 
 void read_coated(SceneContext& context, const JsonObject& object, Material& material) {
@@ -84,6 +126,7 @@ std::optional<Material> read_material(SceneContext& context, const Json::Value& 
     read_rough(context, object, material);
     return material;
   }
+  if (object.type() == "mirror") return mirror(context.scene.spectra);
   material.fresnel = static_cast<FresnelModel>(object.choice("fresnel", fresnel_names, 0));
   if (object.type() == "coated") {
     material.kind = MaterialKind::coated;
@@ -91,6 +134,9 @@ std::optional<Material> read_material(SceneContext& context, const Json::Value& 
   } else if (object.type() == "conductor") {
     material.kind = MaterialKind::conductor;
     read_conductor(context, object, material);
+  } else if (object.type() == "smooth") {
+    material.kind = MaterialKind::smooth;
+    read_smooth(context, object, material);
   } else {
     material.kind = MaterialKind::dielectric;
     read_dielectric(context, object, material);

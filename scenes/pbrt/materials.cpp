@@ -9,8 +9,6 @@
 namespace metamer::pbrt {
 namespace {
 
-constexpr double smooth_alpha = 1e-3;  // below, pbrt and we take a surface as perfectly smooth
-
 constexpr std::string_view material_kinds[] = {
     "diffuse", "conductor", "dielectric", "coateddiffuse", "coatedconductor", "diffusetransmission",
     "hair",    "interface", "measured",   "mix",           "subsurface",      "thindielectric"};
@@ -72,22 +70,21 @@ void read_index(Reader& reader, Parameters& parameters, Material& material) {
   SpectrumSet& spectra = reader.scene.spectra;
   const auto eta = read_spectrum(reader, parameters, "eta", RgbKind::unbounded, SpectrumAlso::texture_or_real);
   material.eta = spectrum_or(eta, spectra.add_constant(1.5).id);
-  if (spectra.min_value(material.eta) <= 0) {
-    parameters.error("eta", "an index of refraction must be positive");
-    material.eta = spectra.add_constant(1.5).id;
-  }
+  if (spectra.min_value(material.eta) > 0) return;
+  parameters.error("eta", "an index of refraction must be positive");
+  material.eta = spectra.add_constant(1.5).id;
 }
 
 void read_dielectric(Reader& reader, Parameters& parameters, Material& material) {
   material.kind = MaterialKind::dielectric;
   read_index(reader, parameters, material);
   read_roughness(reader, parameters, material);
-  if (std::max(material.alpha_x, material.alpha_y) >= smooth_alpha) {
-    reader.messages.warning_once(
-        "rough dielectric", parameters.source(),
-        fmt::format("{}: rough dielectrics are not supported yet; this one is smooth", parameters.what()));
-  }
-  material.alpha_x = material.alpha_y = 0;
+}
+
+void read_thin_dielectric(Reader& reader, Parameters& parameters, Material& material) {
+  material.kind = MaterialKind::dielectric;
+  read_index(reader, parameters, material);
+  material.thin = 1;
 }
 
 // Our coat has no thickness; pbrt's absorbs along its way through the layer.
@@ -136,6 +133,8 @@ Entity read_material(Reader& reader, std::string_view kind, Parameters& paramete
     read_dielectric(reader, parameters, material);
   } else if (kind == "coateddiffuse") {
     read_coated_diffuse(reader, parameters, material);
+  } else if (kind == "thindielectric") {
+    read_thin_dielectric(reader, parameters, material);
   } else if (kind == "interface" || kind == "none" || kind.empty()) {
     reader.interface_materials.push_back(entity);
     reader.messages.warning_once("interface", parameters.source(),

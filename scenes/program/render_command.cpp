@@ -68,6 +68,11 @@ void tell_result(const FrameReport& report, bool quiet) {
   if (quiet) return;
   if (report.invalid_samples > 0)
     fmt::print(stderr, "metamer: warning: {} samples were not finite and count as black\n", report.invalid_samples);
+  if (report.render.counters.lost_media > 0)
+    fmt::print(
+        stderr,
+        "metamer: warning: rays entered a fifth medium inside of four {} times; the lowest priority was forgotten\n",
+        report.render.counters.lost_media);
   const double seconds = report.render.render_seconds;
   fmt::print(stderr, "metamer: {}x{}, {} samples per pixel in {} on {} thread{} ({} samples/s)\n", settings.width,
              settings.height, samples_text(report.samples), short_time(seconds), report.render.threads,

@@ -8,8 +8,8 @@
 // unbiased if every lobe in which it goes on is drawn with a probability that its weight divides by; so the probability
 // must be positive wherever some F is (a hero for which eta = 1 must not forbid its companions' reflection), and the
 // hero's transmission must be possible unless it is totally reflected. The mean of the four F is both, and bounds every
-// weight by 4 (times the radiance's scale); where the hero is totally reflected nothing can be transmitted and the
-// probability is 1.
+// weight by 4 (times the radiance's scale); where the hero is totally reflected, or opaque, nothing can be transmitted
+// and the probability is 1.
 #if defined(METAMER_SYSTEMS_BSDF_DIELECTRIC_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef METAMER_SYSTEMS_BSDF_DIELECTRIC_INL_H_
 #undef METAMER_SYSTEMS_BSDF_DIELECTRIC_INL_H_
@@ -25,12 +25,18 @@ HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// eta = n_inside / n_outside > 0, where outside is the side that z points to; the hero first. `dispersive`: the etas
-// differ and all four wavelengths are alive. Lanes whose companions have been terminated already are not dispersive:
-// for them, as for lanes of one common eta, eta[0] alone is read. Lanes of `schlick` use Schlick's approximation.
+// eta = n_inside / n_outside > 0, where outside is the side that z points to; the hero first. `dispersive`: the
+// wavelengths part in refraction, because the etas differ or because some are opaque, and all four are alive. Lanes
+// whose companions have been terminated already are not dispersive: for them, as for lanes of one common eta, eta[0]
+// alone is read. Lanes of `schlick` use Schlick's approximation.
+// Where `some_opaque`: wavelengths of `opaque` reflect as conductors of index eta + i kappa, kappa relative to the
+// outside as well, and nothing of them is transmitted.
 struct DielectricOptics {
   VF eta[4];
   MF schlick, dispersive;
+  bool some_opaque = false;
+  MF opaque[4];
+  VF kappa[4];
 };
 
 struct DielectricSample {
@@ -56,6 +62,14 @@ HWY_INLINE DielectricBoundary boundary(const RelativeIndex& index, VF cos_theta_
   b.reflectance = hn::IfThenElse(schlick, approximate, b.reflectance);
   return b;
 }
+// F of the opaque wavelengths.
+HWY_INLINE void reflect_opaque(const DielectricOptics& optics, VF cos_theta_i, VF f[4]) {
+  for (int j = 0; j < 4; ++j) {
+    const VF exact = fresnel_conductor(optics.eta[j], optics.kappa[j], cos_theta_i);
+    const VF approximate = schlick_conductor(optics.eta[j], optics.kappa[j], cos_theta_i);
+    f[j] = hn::IfThenElse(optics.opaque[j], hn::IfThenElse(optics.schlick, approximate, exact), f[j]);
+  }
+}
 }  // namespace bsdf_detail
 
 // Draws one of the two lobes; u in [0, 1). Transmission scales radiance towards the viewer by (n_viewer / n_light)^2
@@ -71,14 +85,21 @@ HWY_INLINE DielectricSample sample_dielectric(const Vec3& wo, const DielectricOp
   const DielectricBoundary boundary = bsdf_detail::boundary(hero, cos_theta_o, optics.schlick);
   const bool any_dispersive = !hn::AllFalse(d, optics.dispersive);
   VF f[4] = {boundary.reflectance, boundary.reflectance, boundary.reflectance, boundary.reflectance};
-  VF p_reflect = f[0];
+  MF blocked = boundary.total;  // for the hero
   if (any_dispersive) {
     for (int j = 1; j < 4; ++j) {
       const bsdf_detail::RelativeIndex index = bsdf_detail::relative_index(optics.eta[j], inside);
       f[j] = bsdf_detail::boundary(index, cos_theta_o, optics.schlick).reflectance;
     }
+  }
+  if (optics.some_opaque) {
+    bsdf_detail::reflect_opaque(optics, cos_theta_o, f);
+    blocked = hn::Or(blocked, optics.opaque[0]);
+  }
+  VF p_reflect = hn::IfThenElse(blocked, one, f[0]);
+  if (any_dispersive) {
     const VF mean = hn::Mul(splat(0.25f), hn::Add(hn::Add(f[0], f[1]), hn::Add(f[2], f[3])));
-    p_reflect = hn::IfThenElse(hn::AndNot(boundary.total, optics.dispersive), mean, f[0]);
+    p_reflect = hn::IfThenElse(hn::AndNot(blocked, optics.dispersive), mean, p_reflect);
   }
 
   DielectricSample sample;
@@ -92,10 +113,11 @@ HWY_INLINE DielectricSample sample_dielectric(const Vec3& wo, const DielectricOp
 
   const VF scale = hn::IfThenElse(sample.transmitted, hn::Mul(hero.inv_eta, hero.inv_eta), one);
   for (int j = 0; j < 4; ++j) sample.weight[j] = scale;
+  if (optics.some_opaque) sample.weight[0] = hn::IfThenElse(optics.opaque[0], f[0], scale);
   if (any_dispersive) {
     const VF factor = hn::Div(scale, sample.probability);
     const VF hero_share = hn::IfThenElse(sample.transmitted, hn::Sub(one, f[0]), f[0]);
-    sample.weight[0] = hn::IfThenElse(optics.dispersive, hn::Mul(hero_share, factor), scale);
+    sample.weight[0] = hn::IfThenElse(optics.dispersive, hn::Mul(hero_share, factor), sample.weight[0]);
     for (int j = 1; j < 4; ++j) {
       const VF share = hn::IfThenZeroElse(sample.transmitted, hn::Mul(f[j], factor));
       sample.weight[j] = hn::IfThenElse(optics.dispersive, share, scale);

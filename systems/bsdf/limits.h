@@ -13,6 +13,9 @@ inline constexpr float smooth_alpha = 1e-3f;
 // A rough distribution's smaller alpha is raised to this, as pbrt-v4 does: (0, 0.1) stays finite.
 inline constexpr float least_alpha = 1e-4f;
 
+// A rough boundary whose relative index is nearer to 1 than this is not there.
+inline constexpr float matched_index = 1e-4f;
+
 // Beyond this shininess the half vector's rounding would show in a rough material's lobe; it is 0.1 degrees wide.
 inline constexpr float largest_shininess = 1e6f;
 

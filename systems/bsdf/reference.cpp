@@ -208,32 +208,4 @@ BsdfSample sample_conductor(const Direction& wo, const Roughness& roughness, con
   return sample;
 }
 
-BsdfSample sample_dielectric(const Direction& wo, const DielectricOptics& optics, double u) {
-  BsdfSample sample;
-  sample.delta = true;
-  const double side = side_of(wo), cos_theta_o = std::abs(wo.z);
-  Spectrum4 f;
-  for (size_t j = 0; j < 4; ++j) {
-    const double eta_j = optics.dispersive ? optics.eta[j] : optics.eta[0];
-    const double eta = side > 0 ? eta_j : 1 / eta_j;
-    f[j] = optics.schlick ? schlick_dielectric(eta, cos_theta_o) : fresnel_dielectric(eta, cos_theta_o);
-  }
-  const double p_reflect = optics.dispersive && f[0] < 1 ? (f[0] + f[1] + f[2] + f[3]) / 4 : f[0];
-  const double hero_eta = side > 0 ? optics.eta[0] : 1 / optics.eta[0];
-  if (u < p_reflect) {
-    sample.wi = {-wo.x, -wo.y, wo.z};
-    sample.pdf = p_reflect;
-    for (size_t j = 0; j < 4; ++j) sample.weight[j] = f[j] / p_reflect;
-    return sample;
-  }
-  if (!refract({-wo.x, -wo.y, -wo.z}, {0, 0, side}, hero_eta, sample.wi)) return sample;
-  sample.transmitted = true;
-  sample.terminate_secondary = optics.dispersive;
-  sample.pdf = 1 - p_reflect;
-  for (size_t j = 0; j < (optics.dispersive ? 1u : 4u); ++j) {
-    sample.weight[j] = (1 - f[j]) / sample.pdf / square(hero_eta);
-  }
-  return sample;
-}
-
 }  // namespace metamer::reference

@@ -4,6 +4,7 @@
 // f_cos = f |cos(theta_i)|, pdfs per solid angle, a delta lobe carries a probability.
 #pragma once
 #include <array>
+#include <cstddef>
 
 namespace metamer::reference {
 
@@ -80,8 +81,31 @@ BsdfSample sample_conductor(const Direction& wo, const Roughness& roughness, con
 struct DielectricOptics {
   Spectrum4 eta{};
   bool schlick = false;
-  bool dispersive = false;  // the etas differ and all four wavelengths are alive
+  bool dispersive = false;  // the wavelengths part and all four are alive
+  std::array<bool, 4> opaque{};
+  Spectrum4 kappa{};  // of the opaque ones
 };
 BsdfSample sample_dielectric(const Direction& wo, const DielectricOptics& optics, double u);
+
+// The rough dielectric: see rough_dielectric-inl.h; nothing of it is opaque. `pdf` of each wavelength as the hero.
+struct RoughDielectricValue {
+  Spectrum4 f_cos{}, pdf{};
+};
+RoughDielectricValue eval_rough_dielectric(const Direction& wo, const Roughness& roughness,
+                                           const DielectricOptics& optics, const Direction& wi);
+BsdfSample sample_rough_dielectric(const Direction& wo, const Roughness& roughness, const DielectricOptics& optics,
+                                   double choice, double u, double v);
+
+// The thin plate: see thin-inl.h. eta and kappa against what is around.
+struct ThinOptics {
+  Spectrum4 eta{}, kappa{}, optical_depth{};
+  std::array<bool, 4> opaque{};
+  bool schlick = false, companions = true;
+};
+struct ThinShares {
+  double reflected = 0, transmitted = 0;
+};
+ThinShares thin_shares(const ThinOptics& optics, std::size_t j, double cos_theta);
+BsdfSample sample_thin(const Direction& wo, const ThinOptics& optics, double u);
 
 }  // namespace metamer::reference

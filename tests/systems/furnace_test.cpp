@@ -99,6 +99,58 @@ TEST(Furnace, ALosslessGlassCubeVanishesOnEveryPath) {
   }
 }
 
+TEST(Furnace, AThinPlateVanishesOnEveryPath) {
+  SceneBuilder b = furnace(32, many_events);
+  b.add(sphere(1), b.thin(b.constant(1.5), zero_spectrum, 0));
+  b.add(rectangle(1, 1), b.thin(b.constant(2.4), zero_spectrum, 0), moved(0, 0, 1.5) * turned(40, 1, 0.3, 0));
+  expect_every_path(trace_radiances(*b.freeze()), one, 1e-5);
+}
+
+// A rough boundary in its furnace: what facets scatter twice is lost, from either side, and nothing is gained. One
+// event: what is refracted meets the furnace there.
+TEST(Furnace, RoughGlassShowsItsAlbedo) {
+  struct Case {
+    float alpha_x, alpha_y;
+    double eta, degrees;
+  };
+  for (const auto& [alpha_x, alpha_y, eta, degrees] : {Case{0.1f, 0.1f, 1.5, 20},
+                                                       {0.5f, 0.5f, 1.5, 0},
+                                                       {0.4f, 0.4f, 1.33, 75},
+                                                       {0.15f, 0.6f, 1.5, 50},
+                                                       {0.4f, 0.4f, 0.7, 30}}) {
+    const double theta = glm::radians(degrees);
+    const reference::Direction wo = {std::sin(theta), 0, std::cos(theta)};
+    reference::DielectricOptics optics;
+    optics.eta.fill(eta);
+    const reference::Roughness roughness{double{alpha_x}, double{alpha_y}};
+    const auto f_cos = [&](double cos_theta, double phi) {
+      const double s = std::sqrt(std::max(0.0, 1 - cos_theta * cos_theta));
+      return reference::eval_rough_dielectric(wo, roughness, optics, {s * std::cos(phi), s * std::sin(phi), cos_theta})
+          .f_cos[0];
+    };
+    const double albedo = integrate_rectangle(f_cos, -1, 1, -glm::radians(180.0), glm::radians(180.0), 128);
+    SceneBuilder b(16, 16, 1024, 1);
+    b.light(LightKind::environment, unit_spectrum, 1);
+    b.look_at({std::sin(theta), 0, std::cos(theta)}, {0, 0, 0}, orthographic(1e-3f), {0, 1, 0});
+    b.add(rectangle(1, 1), b.rough_glass(b.constant(eta), alpha_x, alpha_y));
+    SCOPED_TRACE(testing::Message() << alpha_x << " " << alpha_y << ", " << eta << " at " << degrees);
+    expect_mean(
+        trace_radiances(*b.freeze()), [&](double) { return albedo; }, 0.02);
+  }
+}
+
+TEST(Furnace, ARoughGlassBodyLosesLittleAndGainsNothing) {
+  SceneBuilder b = furnace(256, many_events);
+  b.add(sphere(0.6f), b.rough_glass(b.constant(1.5), 0.2f, 0.2f), moved(-0.5, 0, 0));
+  b.add(sphere(0.6f), b.rough_glass(b.named("SF66"), 0.3f, 0.1f), moved(0.5, 0, 0.3));
+  double sum = 0;
+  const std::vector<PathRadiance> paths = trace_radiances(*b.freeze());
+  for (const PathRadiance& path : paths)
+    for (const double radiance : path.radiance) sum += radiance;
+  EXPECT_GT(sum, 0.8 * 4 * double(paths.size()));
+  EXPECT_LT(sum, 1.001 * 4 * double(paths.size()));
+}
+
 TEST(Furnace, DispersingGlassVanishesOnEachWavelength) {
   SceneBuilder b = furnace(2048, many_events);
   b.add(sphere(1), b.dielectric(b.named("SF66")));

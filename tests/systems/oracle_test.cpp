@@ -111,6 +111,72 @@ TEST(Oracle, AgreesOnMirroredInstancesOfFlatGlass) {
   expect_agreement(*b.freeze(), 512, 0.02);
 }
 
+// A glass of water with an ice cube that looks out of it, each solid overlapping its neighbour, over a floor.
+TEST(Oracle, AgreesOnNestedAbsorbingMedia) {
+  SceneBuilder b(side, side, 4096, 9);
+  add_walls(b);
+  b.scene.meshes.push_back(cube_mesh());
+  b.add(mesh(0), b.smooth(b.constant(1.5), b.constant(2e-8), 3), moved(0, -0.7, 0) * stretched(1.2, 0.3, 1.2));
+  b.add(mesh(0), b.smooth(b.constant(1.33), b.constant(8e-8), 1),
+        moved(0, -0.4, 0) * turned(10, 0, 1, 0) * stretched(0.9, 0.7, 0.9));
+  b.add(sphere(0.3f), b.smooth(b.constant(1.31), zero_spectrum, 2), moved(0.1, -0.1, 0.2));
+  b.add(sphere(0.2f), b.diffuse(0.8), moved(-0.15, -0.35, 0.1));
+  add_lamp(b);
+  look(b);
+  expect_agreement(*b.freeze(), 2048, 0.03);
+}
+
+TEST(Oracle, AgreesUnderAnOpenWaterSurface) {
+  SceneBuilder b(side, side, 4096, 6);
+  add_walls(b);
+  b.add(rectangle(20, 20), b.smooth(b.named("water"), b.constant(5e-8)), moved(0, 0.3, 0) * turned(-90, 1, 0, 0));
+  b.add(sphere(0.4f), b.conductor(b.named("Cu.n"), b.named("Cu.k"), 0.3f, 0.3f), moved(0.2, -0.5, 0));
+  b.emit(b.add(sphere(0.2f), b.diffuse(0.2), moved(-0.5, -0.6, 0.5)), b.named("A"), 0.01f);
+  b.light(LightKind::environment, b.named("D65"), 0.01f);
+  look(b, perspective(40), {0, -0.2, 3.7});
+  expect_agreement(*b.freeze(), 2048, 0.03);
+}
+
+TEST(Oracle, AgreesOnRoughGlassBetweenLampAndFloor) {
+  SceneBuilder b(side, side, 4096, 6);
+  add_walls(b);
+  b.add(sphere(0.5f), b.rough_glass(b.named("SF66"), 0.4f, 0.4f), moved(-0.3, -0.4, 0.2));
+  b.scene.meshes.push_back(cube_mesh());
+  b.add(mesh(0), b.rough_glass(b.constant(1.5), 0.3f, 0.3f),
+        moved(0.5, -0.3, 0) * turned(30, 1, 1, 0) * stretched(0.5, 0.5, 0.5));
+  add_lamp(b);
+  b.light(LightKind::environment, b.named("D65"), 0.003f);
+  look(b);
+  expect_agreement(*b.freeze(), 4096, 0.03);
+}
+
+TEST(Oracle, AgreesOnRoughGlassThatAbsorbs) {
+  SceneBuilder b(side, side, 4096, 6);
+  add_walls(b);
+  Material frosted = b.rough_glass(b.constant(1.5), 0.3f, 0.6f);
+  frosted.kappa = b.constant(1e-7);
+  frosted.priority = 2;
+  b.add(sphere(0.7f), frosted, moved(0, -0.2, 0));
+  b.emit(b.add(sphere(0.2f), b.diffuse(0.2), moved(0, -0.1, 0)), b.named("A"), 0.004f);  // inside
+  add_lamp(b);
+  look(b);
+  expect_agreement(*b.freeze(), 4096, 0.03);
+}
+
+TEST(Oracle, AgreesOnThinPanesAndPartlyOpaqueMatter) {
+  SceneBuilder b(side, side, 4096, 6);
+  add_walls(b);
+  const std::vector<double> nm = {520, 560}, kappa = {0, 2};
+  b.add(sphere(0.5f), b.smooth(b.constant(1.6), b.scene.spectra.add_table(nm, kappa, Extend::constant).id),
+        moved(-0.4, -0.4, 0));
+  b.add(rectangle(1, 1), b.thin(b.named("SF66"), b.constant(2e-5), 0.002f),
+        moved(0.5, -0.3, 0.3) * turned(40, 0, 1, 0));
+  b.add(sphere(0.3f), b.smooth(b.constant(1e-3), b.constant(50)), moved(0.4, -0.7, -0.2));
+  add_lamp(b);
+  look(b);
+  expect_agreement(*b.freeze(), 1536, 0.03);
+}
+
 TEST(Oracle, AgreesOnADirectionalLightBesideAPointLight) {
   SceneBuilder b(side, side, 1024, 3);
   b.add(sphere(0.8f), b.diffuse(0.6));

@@ -138,10 +138,11 @@ TEST(NativeMistakes, TypesOfObjects) {
 
 TEST(NativeMistakes, NumbersOutOfRange) {
   EXPECT_EQ(messages_of_material("{\"type\": \"diffuse\",\n\"reflectance\": -0.1}"),
-            "scene.json:3: error: 'reflectance' is the number -0.1; expected a number from 0 to 1\n");
+            "scene.json:3: error: 'reflectance' is the number -0.1; expected a number from 0 to 1 (in material 'm')\n");
   EXPECT_THAT(messages_of_material("{\"type\": \"diffuse\", \"reflectance\": 1.01}"), HasSubstr("from 0 to 1"));
-  EXPECT_THAT(messages_of_material("{\"type\": \"diffuse\",\n\"reflectance\": {\"table\": [[400, 0.5],\n[500, 1.5]]}}"),
-              "scene.json:4: error: 'table[1][1]' is the number 1.5; expected a number from 0 to 1\n");
+  EXPECT_THAT(
+      messages_of_material("{\"type\": \"diffuse\",\n\"reflectance\": {\"table\": [[400, 0.5],\n[500, 1.5]]}}"),
+      "scene.json:4: error: 'table[1][1]' is the number 1.5; expected a number from 0 to 1 (in material 'm')\n");
   EXPECT_THAT(messages_of_material("{\"type\": \"diffuse\", \"reflectance\": {\"rgb\": [0.5, -1, 2]}}"),
               AllOf(HasSubstr("'rgb[1]' is the number -1"), HasSubstr("'rgb[2]' is the number 2")));
   EXPECT_THAT(
@@ -196,15 +197,17 @@ TEST(NativeMistakes, SpectraThatAreNone) {
 }
 
 TEST(NativeMistakes, SpectraOfTheFile) {
-  EXPECT_EQ(messages_of("{\"metamer\": 1, \"spectra\": {\n\"a\": {\"blackbdy\": 3000},\n\"b\": \"a\",\n\"high\": 2},\n"
-                        "\"materials\": {\n\"m\": {\"type\": \"diffuse\", \"reflectance\": \"high\"},\n"
-                        "\"n\": {\"type\": \"diffuse\", \"reflectance\": \"hihg\"},\n"
-                        "\"o\": {\"type\": \"dielectric\", \"eta\": \"high\"}}, \"entities\": []}"),
-            "scene.json:2: error: unknown key 'blackbdy' in a spectrum (did you mean 'blackbody'?)\n"
-            "scene.json:2: error: expected 'constant', 'table', 'named', 'blackbody', 'daylight' or 'rgb'\n"
-            "scene.json:3: error: unknown spectrum 'a'; entries of 'spectra' may name built-in spectra only\n"
-            "scene.json:6: error: 'reflectance' reaches 2; expected values from 0 to 1 at every wavelength\n"
-            "scene.json:7: error: unknown spectrum 'hihg' (did you mean 'high'?)\n");
+  EXPECT_EQ(
+      messages_of("{\"metamer\": 1, \"spectra\": {\n\"a\": {\"blackbdy\": 3000},\n\"b\": \"a\",\n\"high\": 2},\n"
+                  "\"materials\": {\n\"m\": {\"type\": \"diffuse\", \"reflectance\": \"high\"},\n"
+                  "\"n\": {\"type\": \"diffuse\", \"reflectance\": \"hihg\"},\n"
+                  "\"o\": {\"type\": \"dielectric\", \"eta\": \"high\"}}, \"entities\": []}"),
+      "scene.json:2: error: unknown key 'blackbdy' in a spectrum (did you mean 'blackbody'?)\n"
+      "scene.json:2: error: expected 'constant', 'table', 'named', 'blackbody', 'daylight' or 'rgb'\n"
+      "scene.json:3: error: unknown spectrum 'a'; entries of 'spectra' may name built-in spectra only\n"
+      "scene.json:6: error: 'reflectance' reaches 2; expected values from 0 to 1 at every wavelength (in material "
+      "'m')\n"
+      "scene.json:7: error: unknown spectrum 'hihg' (did you mean 'high'?) (in material 'n')\n");
 }
 
 TEST(NativeMistakes, MaterialsThatAreIncomplete) {

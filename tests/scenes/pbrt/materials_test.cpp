@@ -111,6 +111,23 @@ TEST(PbrtMaterials, CoatedDiffuseBecomesOurCoat) {
   EXPECT_THAT(uneven.messages, testing::Contains(testing::HasSubstr("the geometric mean of the two")));
 }
 
+TEST(PbrtMaterials, DielectricsMayBeRoughOrThin) {
+  MaterialRead frosted("Material \"dielectric\" \"float roughness\" .25");
+  EXPECT_EQ(frosted.m.kind, MaterialKind::dielectric);
+  EXPECT_EQ(frosted.m.alpha_x, 0.5f) << "remapped by the square root";
+  EXPECT_EQ(frosted.m.alpha_y, 0.5f);
+  EXPECT_TRUE(frosted.messages.empty());
+  MaterialRead brushed(
+      "Material \"dielectric\" \"float uroughness\" .1 \"float vroughness\" .3 \"bool remaproughness\" false");
+  EXPECT_EQ(brushed.m.alpha_x, 0.1f);
+  EXPECT_EQ(brushed.m.alpha_y, 0.3f);
+  MaterialRead pane("Material \"thindielectric\" \"float eta\" 1.7");
+  EXPECT_EQ(pane.m.kind, MaterialKind::dielectric);
+  EXPECT_EQ(pane.m.thin, 1u);
+  EXPECT_NEAR(pane.value(pane.m.eta, 500), 1.7, 1e-6);
+  EXPECT_TRUE(pane.messages.empty());
+}
+
 TEST(PbrtMaterials, NamedMaterialsMayBeUsedBeforeTheyAreMadeAndAreShared) {
   const ReadScene read = read_world(
       std::string("NamedMaterial \"red\"") + sphere + sphere +
@@ -149,14 +166,13 @@ TEST(PbrtMaterials, ReflectancesAboveOneAreClampedWithAWarning) {
 }
 
 TEST(PbrtMaterials, WhatReplacesTheUnsupportedIsSaidOncePerKind) {
-  const ReadScene read =
-      read_world(std::string("Texture \"wood\" \"spectrum\" \"imagemap\" \"string filename\" \"wood.png\"\n") +
-                 "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere +
-                 "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere +
-                 "Material \"coateddiffuse\" \"rgb reflectance\" [.2 .2 .2] \"float thickness\" 1" + sphere +
-                 "Material \"hair\" \"float eumelanin\" 1" + sphere + "Material \"hair\" \"float eumelanin\" 1" +
-                 sphere + "Material \"dielectric\" \"float roughness\" .5" + sphere +
-                 "Material \"diffuse\" \"texture displacement\" \"wood\" \"string normalmap\" \"n.png\"" + sphere);
+  const ReadScene read = read_world(
+      std::string("Texture \"wood\" \"spectrum\" \"imagemap\" \"string filename\" \"wood.png\"\n") +
+      "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere +
+      "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere +
+      "Material \"coateddiffuse\" \"rgb reflectance\" [.2 .2 .2] \"float thickness\" 1" + sphere +
+      "Material \"hair\" \"float eumelanin\" 1" + sphere + "Material \"hair\" \"float eumelanin\" 1" + sphere +
+      "Material \"diffuse\" \"texture displacement\" \"wood\" \"string normalmap\" \"n.png\"" + sphere);
   EXPECT_TRUE(read.ok);
   EXPECT_THAT(
       read.messages,
@@ -168,11 +184,9 @@ TEST(PbrtMaterials, WhatReplacesTheUnsupportedIsSaidOncePerKind) {
           "scene:5: warning: Material \"coateddiffuse\": 'thickness' is not supported yet; the layer has no thickness "
           "and scatters nothing",
           "scene:6: warning: material \"hair\" is not supported yet; it is rendered as diffuse with reflectance 0.5",
-          "scene:8: warning: Material \"dielectric\": rough dielectrics are not supported yet; this one is smooth",
-          "scene:9: warning: Material \"diffuse\": 'displacement' is not supported yet; the surface stays as it is",
-          "scene:9: warning: Material \"diffuse\": 'normalmap' is not supported yet; the surface stays as it is"));
+          "scene:8: warning: Material \"diffuse\": 'displacement' is not supported yet; the surface stays as it is",
+          "scene:8: warning: Material \"diffuse\": 'normalmap' is not supported yet; the surface stays as it is"));
   EXPECT_NEAR(read.scene.spectra.value(read.material(2).reflectance, 500), 0.2, 1e-6);
-  EXPECT_EQ(read.material(5).alpha_x, 0.0f);
 }
 
 TEST(PbrtMaterials, ShapesOfAnInterfaceAreLeftOut) {

@@ -15,6 +15,8 @@
 #include "systems/bsdf/diffuse-inl.h"
 #include "systems/bsdf/ggx-inl.h"
 #include "systems/bsdf/rough-inl.h"
+#include "systems/bsdf/rough_dielectric-inl.h"
+#include "systems/bsdf/thin-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
@@ -27,17 +29,17 @@ struct Arguments {
   Vec3 wo, wi;
   VF u, v, alpha_x, alpha_y;
   VF albedo[4], eta[4], kappa[4];
-  MF schlick, dispersive;
+  MF schlick, dispersive, opaque;
   RoughOptics rough;
   VF choice;
 };
 struct Results {
   Vec3 wi;
-  VF value[4], pdf, delta, transmitted, terminate_secondary;
+  VF value[4], pdf, pdfs[4], delta, transmitted, terminate_secondary;
 };
 Results nothing() {
   const VF zero = splat(0);
-  return {{zero, zero, zero}, {zero, zero, zero, zero}, zero, zero, zero, zero};
+  return {{zero, zero, zero}, {zero, zero, zero, zero}, zero, {zero, zero, zero, zero}, zero, zero, zero};
 }
 
 template <class Kernel>
@@ -65,6 +67,7 @@ std::vector<BsdfResult> run(const std::vector<BsdfCase>& cases, Kernel kernel) {
     for (VF& x : a.kappa) x = next();
     a.schlick = hn::Eq(next(), splat(1.0f));
     a.dispersive = hn::Eq(next(), splat(1.0f));
+    a.opaque = hn::Eq(next(), splat(1.0f));
     for (int j = 0; j < 4; ++j) a.rough.kd[j] = a.albedo[j];
     for (VF& x : a.rough.ks) x = next();
     a.rough.shininess = next();
@@ -72,8 +75,8 @@ std::vector<BsdfResult> run(const std::vector<BsdfCase>& cases, Kernel kernel) {
     a.choice = next();
     const Results r = kernel(a);
     size_t o = 0;
-    for (const VF& x : {r.wi.x, r.wi.y, r.wi.z, r.value[0], r.value[1], r.value[2], r.value[3], r.pdf, r.delta,
-                        r.transmitted, r.terminate_secondary}) {
+    for (const VF& x : {r.wi.x, r.wi.y, r.wi.z, r.value[0], r.value[1], r.value[2], r.value[3], r.pdf, r.pdfs[0],
+                        r.pdfs[1], r.pdfs[2], r.pdfs[3], r.delta, r.transmitted, r.terminate_secondary}) {
       hn::Store(x, d, out[o++]);
     }
     for (size_t lane = 0; lane < lanes && first + lane < count; ++lane) {
@@ -137,13 +140,59 @@ std::vector<BsdfResult> SampleConductor(const std::vector<BsdfCase>& cases) {
     return r;
   });
 }
+DielectricOptics glass(const Arguments& a) {
+  DielectricOptics optics;
+  optics.schlick = a.schlick;
+  optics.dispersive = a.dispersive;
+  optics.some_opaque = !hn::AllFalse(FloatTag(), a.opaque);
+  for (int j = 0; j < 4; ++j) {
+    optics.eta[j] = a.eta[j];
+    optics.kappa[j] = a.kappa[j];
+    optics.opaque[j] = hn::And(a.opaque, hn::Ge(a.kappa[j], splat(refracting_kappa)));
+  }
+  return optics;
+}
+std::vector<BsdfResult> EvalRoughDielectric(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) {
+    Results r = nothing();
+    eval_rough_dielectric(make_ggx_lobe(a.wo, a.alpha_x, a.alpha_y), glass(a), a.wi, r.value, r.pdfs);
+    return r;
+  });
+}
+std::vector<BsdfResult> SampleRoughDielectric(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) {
+    const RoughDielectricSample sample =
+        sample_rough_dielectric(make_ggx_lobe(a.wo, a.alpha_x, a.alpha_y), glass(a), a.choice, a.u, a.v);
+    Results r = nothing();
+    r.wi = sample.wi;
+    for (int j = 0; j < 4; ++j) r.value[j] = sample.weight[j];
+    r.pdf = sample.pdf;
+    r.transmitted = flag(sample.transmitted);
+    r.terminate_secondary = flag(sample.terminate_secondary);
+    return r;
+  });
+}
+std::vector<BsdfResult> SampleThin(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) {
+    ThinOptics optics;
+    for (int j = 0; j < 4; ++j) {
+      optics.eta[j] = a.eta[j];
+      optics.kappa[j] = optics.optical_depth[j] = a.kappa[j];
+      optics.opaque[j] = a.opaque;
+    }
+    optics.schlick = a.schlick;
+    optics.companions = a.dispersive;
+    const ThinSample sample = sample_thin(hn::Abs(a.wo.z), optics, a.u);
+    Results r = nothing();
+    for (int j = 0; j < 4; ++j) r.value[j] = sample.weight[j];
+    r.pdf = sample.probability;
+    r.transmitted = flag(sample.transmitted);
+    return r;
+  });
+}
 std::vector<BsdfResult> SampleDielectric(const std::vector<BsdfCase>& cases) {
   return run(cases, [](const Arguments& a) {
-    DielectricOptics optics;
-    for (int j = 0; j < 4; ++j) optics.eta[j] = a.eta[j];
-    optics.schlick = a.schlick;
-    optics.dispersive = a.dispersive;
-    const DielectricSample sample = sample_dielectric(a.wo, optics, a.u);
+    const DielectricSample sample = sample_dielectric(a.wo, glass(a), a.u);
     Results r = nothing();
     r.wi = sample.wi;
     for (int j = 0; j < 4; ++j) r.value[j] = sample.weight[j];
@@ -211,6 +260,9 @@ HWY_EXPORT(SampleConductor);
 HWY_EXPORT(SampleDielectric);
 HWY_EXPORT(EvalCoated);
 HWY_EXPORT(SampleCoated);
+HWY_EXPORT(EvalRoughDielectric);
+HWY_EXPORT(SampleRoughDielectric);
+HWY_EXPORT(SampleThin);
 
 namespace testing {
 std::vector<BsdfResult> run_eval_diffuse(const std::vector<BsdfCase>& cases) {
@@ -239,6 +291,15 @@ std::vector<BsdfResult> run_eval_coated(const Coat& coat, const std::vector<Bsdf
 }
 std::vector<BsdfResult> run_sample_coated(const Coat& coat, const std::vector<BsdfCase>& cases) {
   return HWY_DYNAMIC_DISPATCH(SampleCoated)(coat, cases);
+}
+std::vector<BsdfResult> run_eval_rough_dielectric(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(EvalRoughDielectric)(cases);
+}
+std::vector<BsdfResult> run_sample_rough_dielectric(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(SampleRoughDielectric)(cases);
+}
+std::vector<BsdfResult> run_sample_thin(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(SampleThin)(cases);
 }
 }  // namespace testing
 }  // namespace metamer

@@ -15,13 +15,14 @@ struct BsdfCase {
   float alpha_x = 0, alpha_y = 0;
   float albedo[4] = {1, 1, 1, 1};
   float eta[4] = {1, 1, 1, 1}, kappa[4] = {0, 0, 0, 0};
-  float schlick = 0, dispersive = 0;                                      // 1 where set
+  float schlick = 0, dispersive = 0, opaque = 0;  // 1 where set; opaque: as far as kappa says so
   float ks[4] = {0, 0, 0, 0}, shininess = 0, normalized = 0, choice = 0;  // with albedo as kd
 };
 struct BsdfResult {
   float wi[3] = {0, 0, 0};
   float value[4] = {0, 0, 0, 0};  // f_cos of an evaluation, weight of a sample
   float pdf = 0;
+  float pdfs[4] = {0, 0, 0, 0};  // where each wavelength has its own
   float delta = 0, transmitted = 0, terminate_secondary = 0;
 };
 using BsdfKernel = std::vector<BsdfResult> (*)(const std::vector<BsdfCase>&);
@@ -33,5 +34,8 @@ std::vector<BsdfResult> run_sample_rough(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_eval_conductor(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_sample_conductor(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_sample_dielectric(const std::vector<BsdfCase>& cases);
+std::vector<BsdfResult> run_eval_rough_dielectric(const std::vector<BsdfCase>& cases);
+std::vector<BsdfResult> run_sample_rough_dielectric(const std::vector<BsdfCase>& cases);
+std::vector<BsdfResult> run_sample_thin(const std::vector<BsdfCase>& cases);  // kappa as optical depth, but of opaque
 
 }  // namespace metamer::testing

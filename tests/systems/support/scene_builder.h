@@ -65,6 +65,27 @@ struct SceneBuilder {
     return material;
   }
 
+  Material smooth(SpectrumId n, SpectrumId kappa, uint32_t priority = 0) {
+    Material material = dielectric(n);
+    material.kind = MaterialKind::smooth;
+    material.kappa = kappa;
+    material.priority = priority;
+    return material;
+  }
+  Material thin(SpectrumId eta, SpectrumId kappa, float thickness) {
+    Material material = dielectric(eta);
+    material.kappa = kappa;
+    material.thin = 1;
+    material.thickness = thickness;
+    return material;
+  }
+  Material rough_glass(SpectrumId eta, float alpha_x, float alpha_y) {
+    Material material = dielectric(eta);
+    material.alpha_x = alpha_x;
+    material.alpha_y = alpha_y;
+    return material;
+  }
+
   Entity place(const glm::dmat4& matrix = glm::dmat4(1)) {
     const Entity entity = scene.registry.create();
     Transform t;
