@@ -17,10 +17,22 @@ inline constexpr uint32_t batch_capacity = 2048;  // paths; a multiple of 16
 inline constexpr uint32_t dead_lane = 0xffffffffu;
 
 // What a hit's lanes are sorted by: each kind has its own kernel over all its lanes. The last two end a path.
-enum class ShadeKind : uint32_t { diffuse, rough, rough_conductor, smooth_conductor, dielectric, absorber, miss };
-inline constexpr uint32_t shade_kind_count = 7;
-// Rough kinds are lit by light samples, smooth kinds only by what lies in the few directions they answer to.
-inline constexpr ShadeKind rough_kinds[] = {ShadeKind::diffuse, ShadeKind::rough, ShadeKind::rough_conductor};
+enum class ShadeKind : uint32_t {
+  diffuse,
+  rough,
+  smooth_coated,
+  rough_coated,
+  rough_conductor,
+  smooth_conductor,
+  dielectric,
+  absorber,
+  miss
+};
+inline constexpr uint32_t shade_kind_count = 9;
+// Rough kinds are lit by light samples, smooth kinds only by what lies in the few directions they answer to. A smooth
+// coat does both: its body is rough, its surface mirrors.
+inline constexpr ShadeKind rough_kinds[] = {ShadeKind::diffuse, ShadeKind::rough, ShadeKind::smooth_coated,
+                                            ShadeKind::rough_coated, ShadeKind::rough_conductor};
 inline constexpr ShadeKind smooth_kinds[] = {ShadeKind::smooth_conductor, ShadeKind::dielectric};
 
 // Lanes [begin, end) of a sorted stream; begin is a multiple of 16, lanes up to the next multiple are dead.

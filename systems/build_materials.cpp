@@ -1,8 +1,9 @@
+#include "systems/build_materials.h"
+
 #include <fmt/format.h>
 
 #include "engine/simd/portable_math.h"
 #include "systems/bsdf/limits.h"
-#include "systems/freeze.h"
 
 namespace metamer {
 namespace {
@@ -106,6 +107,7 @@ MaterialRow add_material(const Material& material, World& world) {
     case MaterialKind::diffuse: return add_diffuse(material, world);
     case MaterialKind::conductor: return add_conductor(material, world);
     case MaterialKind::rough: return add_rough(material, world);
+    case MaterialKind::coated: return add_coated(material, world);
     case MaterialKind::dielectric: break;
   }
   return add_dielectric(material, world);
@@ -121,6 +123,7 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
     if (entity.index >= own.size()) own.resize(entity.index + 1);
     const Material material = registry.get<Material>(entity);
     if (material.kind == MaterialKind::rough) check_rough(scene, entity, material, diagnostics);
+    if (material.kind == MaterialKind::coated && !check_coated(scene, entity, material, diagnostics)) return;
     own[entity.index] = add_material(material, world);
   });
   Material grey;

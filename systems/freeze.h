@@ -20,8 +20,8 @@ struct MaterialRow {
   ShadeKind kind = ShadeKind::diffuse;
   uint32_t row = 0;
 };
-// Errors: a rough material's shininess out of range, negative spectra. Warnings: its taught form creates energy at
-// normal view; the albedos of its normalised form sum to more than 1.
+// Errors: a rough material's shininess out of range, negative spectra; those of build_materials.h. Warnings: its taught
+// form creates energy at normal view; the albedos of its normalised form sum to more than 1.
 std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagnostics& diagnostics);
 
 // Objects, vertices, quadrics, and the light rows of emitting shapes.

@@ -68,13 +68,13 @@ void gather_direct_light(const World& world, uint32_t depth, Batch& batch, Stage
   for (const uint32_t row : world.summed_lights) {
     light_towards(world, row, batch.shade);
     clock.charge(SystemId::light_sample);
-    weigh_lights(world, {depth, true, false}, batch, clock, counters);
+    weigh_lights(world, {depth, true, false, false}, batch, clock, counters);
   }
   if (world.light_choice.size() == 0) return;
   light_sample(world, depth, batch.shade);
   clock.charge(SystemId::light_sample);
   const bool probes = world.settings.shadows;
-  weigh_lights(world, {depth, true, probes}, batch, clock, counters);
+  weigh_lights(world, {depth, true, probes, false}, batch, clock, counters);
   if (!probes) return;
   probe_rays(batch.shade, batch.next);
   std::swap(batch.paths, batch.next);
@@ -91,6 +91,8 @@ void branch_out(const World& world, uint32_t depth, Batch& batch, StageClock& cl
   };
   shade_smooth_conductor(world, batch.shade);
   push(ShadeKind::smooth_conductor, Branch::reflected);
+  shade_coat_mirror(world, batch.shade);
+  push(ShadeKind::smooth_coated, Branch::reflected);
   const uint32_t last = static_cast<uint32_t>(world.branches > 2 ? Branch::refracted_3 : Branch::refracted);
   for (uint32_t branch = static_cast<uint32_t>(Branch::reflected); branch <= last; ++branch) {
     shade_dielectric(world, depth, static_cast<Branch>(branch), batch.shade);
@@ -135,6 +137,8 @@ void trace_batch(const World& world, std::span<const RayPacket> packets, const T
 void shade_rough_kinds(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
   shade_diffuse(world, work, shade, shadow);
   shade_rough(world, work, shade, shadow);
+  shade_smooth_coated(world, work, shade, shadow);
+  shade_rough_coated(world, work, shade, shadow);
   shade_rough_conductor(world, work, shade, shadow);
 }
 

@@ -71,9 +71,12 @@ void light_towards(const World& world, uint32_t row, ShadeStream& shade);
 struct ShadeWork {
   uint32_t depth = 0;
   bool weigh_light = true, draw_next = true;
+  bool draw_mirror = true;  // the next direction may be a smooth coat's mirror image; else it comes from the body alone
 };
 void shade_diffuse(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
+void shade_smooth_coated(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
+void shade_rough_coated(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough_conductor(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 // All of them, one after the other.
 void shade_rough_kinds(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
@@ -84,6 +87,8 @@ void shade_rough_kinds(const World& world, const ShadeWork& work, ShadeStream& s
 // alone. A kind that only reflects has no weight in the last five, and need not be called for them.
 enum class Branch : uint32_t { drawn, reflected, refracted, refracted_0, refracted_1, refracted_2, refracted_3 };
 void shade_smooth_conductor(const World& world, ShadeStream& shade);
+// The mirror image in the surface of smooth coats, `reflected`.
+void shade_coat_mirror(const World& world, ShadeStream& shade);
 void shade_dielectric(const World& world, uint32_t depth, Branch branch, ShadeStream& shade);
 
 // Adds the contributions whose light is in sight; all of them where the scene casts no shadows.

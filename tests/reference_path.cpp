@@ -7,6 +7,7 @@
 
 #include "engine/spectrum/observers.h"
 #include "systems/bsdf/reference.h"
+#include "systems/bsdf/reference_coat.h"
 #include "tests/reference_lights.h"
 
 namespace metamer {
@@ -104,6 +105,14 @@ struct Tracer {
       return plus(lit,
                   go_on(hit, frame, reference::sample_rough(wo, optics, choice, u, v), lambda_nm, together, events));
     }
+    if (kind == ShadeKind::smooth_coated || kind == ShadeKind::rough_coated) {
+      const reference::CoatOptics optics = coat(kind, row, lambda_nm);
+      const Spectrum4 lit =
+          direct(hit, frame, lambda_nm, [&](const Direction& wi) { return reference::eval_coated(wo, optics, wi); });
+      const double choice = random(), u = random(), v = random();
+      return plus(lit,
+                  go_on(hit, frame, reference::sample_coated(wo, optics, choice, u, v), lambda_nm, together, events));
+    }
     const reference::Roughness roughness =
         kind == ShadeKind::smooth_conductor
             ? reference::Roughness{}
@@ -118,6 +127,17 @@ struct Tracer {
     const double u = random(), v = random();
     return plus(
         lit, go_on(hit, frame, reference::sample_conductor(wo, roughness, optics, u, v), lambda_nm, together, events));
+  }
+
+  reference::CoatOptics coat(ShadeKind kind, uint32_t row, const Spectrum4& lambda_nm) const {
+    const CoatedColumns& table = kind == ShadeKind::smooth_coated ? world.smooth_coated : world.rough_coated;
+    return {reference_spectrum(world, table.reflectance[row], lambda_nm),
+            reference_spectrum(world, table.eta[row], lambda_nm),
+            double{table.alpha[row]},
+            table.schlick[row] != 0,
+            table.albedos.data(),
+            {table.first_row[row], table.row_stride[row], table.last_pair[row], table.eta_least[row],
+             table.rows_per_eta[row]}};
   }
 
   // Each wavelength goes its own way from here on.

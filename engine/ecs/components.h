@@ -42,13 +42,14 @@ struct Geometry {
                       &Geometry::width, &Geometry::depth, &Geometry::flip_normal);
 };
 
-enum class MaterialKind : uint32_t { diffuse, conductor, dielectric, rough };
+enum class MaterialKind : uint32_t { diffuse, conductor, dielectric, rough, coated };
 enum class FresnelModel : uint32_t { exact, schlick };
 
 // diffuse: `reflectance`. conductor: `eta`, `kappa`, GGX roughness. dielectric: `eta` inside against the
 // outside, smooth. `alpha_x`, `alpha_y` are GGX slopes' widths (not remapped); below 1e-3 a mirror.
 // rough: diffuse `kd` plus Phong-Blinn `ks`, `shininess` (see systems/bsdf/rough-inl.h); as taught, both in sr^-1 and
 // without a bound, or `normalized`, both albedos.
+// coated: diffuse `reflectance` under a clear coat of index `eta` and one GGX width, alpha_x = alpha_y.
 struct Material {
   MaterialKind kind = MaterialKind::diffuse;
   SpectrumId reflectance = 0;

@@ -40,6 +40,15 @@ struct RoughColumns {
   Column<float> shininess;
   Column<uint32_t> normalized;  // 1: the reciprocal form
 };
+// Two of these: coats with a smooth surface and with a rough one. See systems/bsdf/coat_albedo.h for the table.
+struct CoatedColumns {
+  Column<uint32_t> reflectance, eta;  // SpectrumId
+  Column<float> alpha;
+  Column<uint32_t> schlick;
+  Column<uint32_t> first_row, row_stride, last_pair;  // of `albedos`
+  Column<float> eta_least, rows_per_eta;
+  Column<float> albedos;  // the table: what the surfaces reflect by themselves
+};
 struct ConductorColumns {
   Column<uint32_t> eta, kappa;  // SpectrumId
   Column<float> alpha_x, alpha_y;
@@ -126,6 +135,7 @@ struct World {
   Column<Placement> placements;
   DiffuseColumns diffuse;
   RoughColumns rough;
+  CoatedColumns smooth_coated, rough_coated;
   ConductorColumns conductor;
   DielectricColumns dielectric;
   Column<LightRow> lights;

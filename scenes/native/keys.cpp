@@ -16,6 +16,8 @@ constexpr KeySpec spectrum[] = {{"constant"}, {"table"}, {"named"}, {"blackbody"
                                 {"daylight"}, {"rgb"},   {"space"}, {"scale"}};
 constexpr KeySpec material_diffuse[] = {{"type", required}, {"reflectance", required}};
 constexpr KeySpec material_rough[] = {{"type", required}, {"kd"}, {"ks"}, {"shininess"}, {"normalized"}};
+constexpr KeySpec material_coated[] = {{"type", required}, {"reflectance", required}, {"glass"}, {"eta"}, {"roughness"},
+                                       {"fresnel"}};
 constexpr KeySpec material_conductor[] = {{"type", required}, {"metal"},     {"eta"},
                                           {"kappa"},          {"roughness"}, {"fresnel"}};
 constexpr KeySpec material_dielectric[] = {{"type", required}, {"glass"}, {"eta"}, {"fresnel"}};
@@ -55,6 +57,7 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"spectrum", spectrum},
                                 {"material.diffuse", material_diffuse},
                                 {"material.rough", material_rough},
+                                {"material.coated", material_coated},
                                 {"material.conductor", material_conductor},
                                 {"material.dielectric", material_dielectric},
                                 {"mesh", mesh},

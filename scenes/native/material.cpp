@@ -60,6 +60,13 @@ void read_dielectric(SceneContext& context, const JsonObject& object, Material& 
   if (way == "eta") material.eta = read_spectrum(context, *object.find("eta"), "eta", Quantity::eta);
 }
 
+void read_coated(SceneContext& context, const JsonObject& object, Material& material) {
+  if (object.has("reflectance"))
+    material.reflectance = read_spectrum(context, *object.find("reflectance"), "reflectance", Quantity::reflectance);
+  read_dielectric(context, object, material);
+  material.alpha_x = material.alpha_y = static_cast<float>(object.number("roughness", unit_interval, 0));
+}
+
 }  // namespace
 
 std::optional<Material> read_material(SceneContext& context, const Json::Value& value) {
@@ -78,7 +85,10 @@ std::optional<Material> read_material(SceneContext& context, const Json::Value& 
     return material;
   }
   material.fresnel = static_cast<FresnelModel>(object.choice("fresnel", fresnel_names, 0));
-  if (object.type() == "conductor") {
+  if (object.type() == "coated") {
+    material.kind = MaterialKind::coated;
+    read_coated(context, object, material);
+  } else if (object.type() == "conductor") {
     material.kind = MaterialKind::conductor;
     read_conductor(context, object, material);
   } else {

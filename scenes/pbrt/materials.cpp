@@ -68,15 +68,19 @@ void read_conductor(Reader& reader, Parameters& parameters, Material& material) 
   read_roughness(reader, parameters, material);
 }
 
-void read_dielectric(Reader& reader, Parameters& parameters, Material& material) {
+void read_index(Reader& reader, Parameters& parameters, Material& material) {
   SpectrumSet& spectra = reader.scene.spectra;
-  material.kind = MaterialKind::dielectric;
   const auto eta = read_spectrum(reader, parameters, "eta", RgbKind::unbounded, SpectrumAlso::texture_or_real);
   material.eta = spectrum_or(eta, spectra.add_constant(1.5).id);
   if (spectra.min_value(material.eta) <= 0) {
     parameters.error("eta", "an index of refraction must be positive");
     material.eta = spectra.add_constant(1.5).id;
   }
+}
+
+void read_dielectric(Reader& reader, Parameters& parameters, Material& material) {
+  material.kind = MaterialKind::dielectric;
+  read_index(reader, parameters, material);
   read_roughness(reader, parameters, material);
   if (std::max(material.alpha_x, material.alpha_y) >= smooth_alpha) {
     reader.messages.warning_once(
@@ -86,23 +90,38 @@ void read_dielectric(Reader& reader, Parameters& parameters, Material& material)
   material.alpha_x = material.alpha_y = 0;
 }
 
+// Our coat has no thickness; pbrt's absorbs along its way through the layer.
+void read_coated_diffuse(Reader& reader, Parameters& parameters, Material& material) {
+  read_diffuse(reader, parameters, material);
+  material.kind = MaterialKind::coated;
+  read_index(reader, parameters, material);
+  read_roughness(reader, parameters, material);
+  reader.messages.warning_once(
+      "coateddiffuse", parameters.source(),
+      "material \"coateddiffuse\": its layer has no thickness here and absorbs nothing, and all "
+      "internal reflections count; it looks lighter than pbrt's");
+  for (const std::string_view name : {"thickness", "g", "albedo"})
+    parameters.unsupported(name, "the layer has no thickness and scatters nothing");
+  for (const std::string_view name : {"maxdepth", "nsamples"}) parameters.unsupported(name, "the sum is exact");
+  if (material.alpha_x != material.alpha_y)
+    reader.messages.warning_once("anisotropic coat", parameters.source(),
+                                 "material \"coateddiffuse\": its roughness is the same in every direction here, the "
+                                 "geometric mean of the two");
+  material.alpha_x = material.alpha_y = std::sqrt(material.alpha_x * material.alpha_y);
+}
+
 void read_unsupported(Reader& reader, std::string_view kind, Parameters& parameters, Material& material) {
   const bool known = std::find(std::begin(material_kinds), std::end(material_kinds), kind) != std::end(material_kinds);
-  if (kind == "coateddiffuse") {
-    read_diffuse(reader, parameters, material);
-  } else {
-    material.reflectance = reader.scene.spectra.add_constant(0.5).id;
-  }
+  material.reflectance = reader.scene.spectra.add_constant(0.5).id;
   parameters.ignore_the_rest();
   if (!known) {
     reader.messages.error(parameters.source(),
                           fmt::format("there is no material \"{}\"{}", kind, did_you_mean(kind, material_kinds)));
     return;
   }
-  const std::string instead = kind == "coateddiffuse" ? "diffuse with its reflectance" : "diffuse with reflectance 0.5";
   reader.messages.warning_once(
       "material " + std::string(kind), parameters.source(),
-      fmt::format("material \"{}\" is not supported yet; it is rendered as {}", kind, instead));
+      fmt::format("material \"{}\" is not supported yet; it is rendered as diffuse with reflectance 0.5", kind));
 }
 
 }  // namespace
@@ -115,6 +134,8 @@ Entity read_material(Reader& reader, std::string_view kind, Parameters& paramete
     read_conductor(reader, parameters, material);
   } else if (kind == "dielectric") {
     read_dielectric(reader, parameters, material);
+  } else if (kind == "coateddiffuse") {
+    read_coated_diffuse(reader, parameters, material);
   } else if (kind == "interface" || kind == "none" || kind.empty()) {
     reader.interface_materials.push_back(entity);
     reader.messages.warning_once("interface", parameters.source(),

@@ -89,8 +89,8 @@ SceneInfo gather(const LoadedScene& loaded, const BuiltWorld& built) {
   count_geometry(scene, info);
   info.mesh_triangles = world.triangle_vertices.size() / 3;
   info.zero_area_triangles = world.zero_area_triangles;
-  info.materials = count_kinds<MaterialKind, 4>(scene.registry.table<Material>().column<&Material::kind>(),
-                                                {"diffuse", "conductor", "dielectric", "rough"});
+  info.materials = count_kinds<MaterialKind, 5>(scene.registry.table<Material>().column<&Material::kind>(),
+                                                {"diffuse", "conductor", "dielectric", "rough", "coated"});
   info.lights = count_kinds<LightKind, 5>(scene.registry.table<Light>().column<&Light::kind>(),
                                           {"area", "point", "spot", "directional", "environment"});
   info.light_choices = world.lights.size();

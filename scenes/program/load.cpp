@@ -45,6 +45,11 @@ size_t bytes_of(const Columns&... columns) {
   return (size_t{0} + ... + columns.bytes());
 }
 
+size_t coated_bytes(const CoatedColumns& c) {
+  return bytes_of(c.reflectance, c.eta, c.alpha, c.schlick, c.first_row, c.row_stride, c.last_pair, c.eta_least,
+                  c.rows_per_eta, c.albedos);
+}
+
 }  // namespace
 
 LoadedScene load_scene(const std::string& path, const SceneOverrides& overrides, bool quiet) {
@@ -80,6 +85,7 @@ size_t world_bytes(const World& world) {
   return bytes_of(o.kind, o.first_triangle, o.triangle_count, o.shade_kind, o.material, o.first_light, o.placement,
                   o.visibility) +
          bytes_of(world.positions, world.normals, world.uvs, world.triangle_vertices, world.placements) +
+         coated_bytes(world.smooth_coated) + coated_bytes(world.rough_coated) +
          bytes_of(world.rough.kd, world.rough.ks, world.rough.shininess, world.rough.normalized) +
          bytes_of(world.diffuse.reflectance, world.conductor.eta, world.conductor.kappa, world.conductor.alpha_x,
                   world.conductor.alpha_y, world.conductor.schlick, world.dielectric.eta, world.dielectric.schlick,

@@ -89,10 +89,13 @@ HWY_INLINE void conductor_reflectance(const ConductorOptics& optics, VF cos_thet
   }
 }
 
-// f_cos = f |cos(theta_i)| and the pdf with which sample_conductor draws wi; 0 where wi is on the other side, and for
-// smooth lobes. Largest relative error against double: 2e-5 (without Fresnel's, 2e-6).
-HWY_INLINE void eval_conductor(const GgxLobe& lobe, const ConductorOptics& optics, const Vec3& wi, VF f_cos[4],
-                               VF& pdf) {
+// What a perfectly reflecting distribution makes of one light direction: f |cos(theta_i)| without Fresnel's factor, the
+// pdf with which sampling visible normals draws wi, and the cosine between wi and the facet's normal. f_cos and pdf are
+// 0 where wi is on the other side, and for smooth lobes. Largest relative error against double: 2e-6.
+struct GgxReflection {
+  VF f_cos, pdf, cos_theta_d;
+};
+HWY_INLINE GgxReflection eval_ggx_reflection(const GgxLobe& lobe, const Vec3& wi) {
   const VF zero = hn::Zero(FloatTag());
   const Vec3 up = {wi.x, wi.y, flip_sign(wi.z, lobe.side)};
   const MF reflects = hn::AndNot(lobe.smooth, hn::Gt(hn::Min(up.z, lobe.wo.z), zero));
@@ -105,12 +108,22 @@ HWY_INLINE void eval_conductor(const GgxLobe& lobe, const ConductorOptics& optic
   const VF inv_both = hn::Div(splat(1.0f), hn::Mul(q, den));
   const VF ratio = hn::Mul(h2, hn::Mul(den, inv_both));
   const VF half_d = hn::Mul(hn::Mul(ratio, ratio), lobe.d_scale);  // D / 2
-  pdf = hn::IfThenElseZero(reflects, hn::Mul(half_d, lobe.inv_visible));
-  const VF common = hn::IfThenElseZero(reflects, hn::Mul(hn::Mul(half_d, up.z), hn::Mul(q, inv_both)));
+  const VF f_cos = hn::Mul(hn::Mul(half_d, up.z), hn::Mul(q, inv_both));
   // h = 2 m cos(theta_d), both directions being unit vectors.
+  return {hn::IfThenElseZero(reflects, f_cos), hn::IfThenElseZero(reflects, hn::Mul(half_d, lobe.inv_visible)),
+          hn::Mul(splat(0.5f), hn::Sqrt(h2))};
+}
+
+// f_cos = f |cos(theta_i)| and the pdf with which sample_conductor draws wi; 0 where wi is on the other side, and for
+// smooth lobes. Largest relative error against double: 2e-5.
+HWY_INLINE void eval_conductor(const GgxLobe& lobe, const ConductorOptics& optics, const Vec3& wi, VF f_cos[4],
+                               VF& pdf) {
+  const GgxReflection reflection = eval_ggx_reflection(lobe, wi);
+  pdf = reflection.pdf;
+  const MF reflects = hn::Gt(reflection.pdf, hn::Zero(FloatTag()));
   VF reflectance[4];
-  conductor_reflectance(optics, hn::Mul(splat(0.5f), hn::Sqrt(h2)), reflectance);
-  for (int j = 0; j < 4; ++j) f_cos[j] = hn::IfThenElseZero(reflects, hn::Mul(reflectance[j], common));
+  conductor_reflectance(optics, reflection.cos_theta_d, reflectance);
+  for (int j = 0; j < 4; ++j) f_cos[j] = hn::IfThenElseZero(reflects, hn::Mul(reflectance[j], reflection.f_cos));
 }
 
 namespace bsdf_detail {

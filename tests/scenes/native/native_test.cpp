@@ -100,10 +100,18 @@ TEST(Native, ReadsEveryKey) {
   EXPECT_NEAR(r.scene.spectra.value(plastic.ks, 550), 0.5, 1e-7);
   EXPECT_EQ(plastic.shininess, 40);
   EXPECT_EQ(plastic.normalized, 0u);
+  const Material lacquered = r.get<Material>("lacquered"), varnished = r.get<Material>("varnished");
+  EXPECT_EQ(lacquered.kind, MaterialKind::coated);
+  EXPECT_NEAR(r.scene.spectra.value(lacquered.reflectance, 550), 0.25, 1e-7);
+  EXPECT_NEAR(r.scene.spectra.value(lacquered.eta, 550), 1.5, 1e-7);
+  EXPECT_EQ(lacquered.alpha_x, 0.05f);
+  EXPECT_EQ(lacquered.alpha_y, 0.05f);
+  EXPECT_EQ(varnished.alpha_x, 0);
+  EXPECT_FALSE(r.scene.spectra.is_constant(varnished.eta));
   EXPECT_EQ(r.get<Material>("made").alpha_y, 0.2f);
   EXPECT_NEAR(r.scene.spectra.value(r.get<Material>("ice").eta, 550), 1.31, 1e-6);
   EXPECT_NEAR(r.scene.spectra.value(r.get<Material>("ball").reflectance, 500), 0.35, 1e-6);
-  EXPECT_EQ(r.scene.location(r.find("ball")).line, 147u);
+  EXPECT_EQ(r.scene.location(r.find("ball")).line, 159u);
 }
 
 TEST(Native, AppliesOperationsFirstToLastAndUnits) {

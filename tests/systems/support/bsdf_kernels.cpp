@@ -3,11 +3,14 @@
 #include <cmath>
 #include <cstring>
 
+#include "tests/systems/support/coat_kernels.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tests/systems/support/bsdf_kernels.cpp"
 #include "hwy/foreach_target.h"
 //
 #include "hwy/highway.h"
+#include "systems/bsdf/coated-inl.h"
 #include "systems/bsdf/dielectric-inl.h"
 #include "systems/bsdf/diffuse-inl.h"
 #include "systems/bsdf/ggx-inl.h"
@@ -18,6 +21,7 @@ namespace metamer::HWY_NAMESPACE {
 namespace {
 using testing::BsdfCase;
 using testing::BsdfResult;
+using testing::Coat;
 
 struct Arguments {
   Vec3 wo, wi;
@@ -151,6 +155,47 @@ std::vector<BsdfResult> SampleDielectric(const std::vector<BsdfCase>& cases) {
   });
 }
 
+CoatOptics optics_of(const Coat& coat, const Arguments& a) {
+  CoatOptics optics;
+  for (int j = 0; j < 4; ++j) optics.albedo[j] = a.albedo[j], optics.eta[j] = a.eta[j];
+  optics.schlick = hn::Eq(splat(coat.schlick ? 1.0f : 0.0f), splat(1.0f));
+  optics.table = coat.table.data();
+  const auto set = [](uint32_t x) { return hn::Set(IntTag(), static_cast<int>(x)); };
+  optics.rows = {set(coat.rows.first), set(coat.rows.stride), set(coat.rows.last_pair), splat(coat.rows.eta_least),
+                 splat(coat.rows.rows_per_eta)};
+  return optics;
+}
+
+std::vector<BsdfResult> EvalCoated(const Coat& coat, const std::vector<BsdfCase>& cases) {
+  const VF alpha = splat(static_cast<float>(coat.alpha));
+  return run(cases, [&](const Arguments& a) {
+    const CoatOptics optics = optics_of(coat, a);
+    Results r = nothing();
+    if (coat.alpha == 0) {
+      eval_smooth_coat(a.wo, make_smooth_coat_view(a.wo, optics), optics, a.wi, r.value, r.pdf);
+    } else {
+      const GgxLobe lobe = make_ggx_lobe(a.wo, alpha, alpha);
+      eval_rough_coat(lobe, make_rough_coat_view(lobe, optics), optics, a.wi, r.value, r.pdf);
+    }
+    return r;
+  });
+}
+std::vector<BsdfResult> SampleCoated(const Coat& coat, const std::vector<BsdfCase>& cases) {
+  const VF alpha = splat(static_cast<float>(coat.alpha));
+  return run(cases, [&](const Arguments& a) {
+    const CoatOptics optics = optics_of(coat, a);
+    if (coat.alpha == 0) {
+      const CoatView view = make_smooth_coat_view(a.wo, optics);
+      const CoatSample sample = sample_smooth_coat(a.wo, view, optics, a.choice, a.u, a.v);
+      Results r = of_sample(sample.draw);
+      r.delta = flag(sample.mirrored);
+      return r;
+    }
+    const GgxLobe lobe = make_ggx_lobe(a.wo, alpha, alpha);
+    return of_sample(sample_rough_coat(lobe, make_rough_coat_view(lobe, optics), optics, a.choice, a.u, a.v));
+  });
+}
+
 }  // namespace
 }  // namespace metamer::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -164,6 +209,8 @@ HWY_EXPORT(SampleRough);
 HWY_EXPORT(EvalConductor);
 HWY_EXPORT(SampleConductor);
 HWY_EXPORT(SampleDielectric);
+HWY_EXPORT(EvalCoated);
+HWY_EXPORT(SampleCoated);
 
 namespace testing {
 std::vector<BsdfResult> run_eval_diffuse(const std::vector<BsdfCase>& cases) {
@@ -186,6 +233,12 @@ std::vector<BsdfResult> run_sample_conductor(const std::vector<BsdfCase>& cases)
 }
 std::vector<BsdfResult> run_sample_dielectric(const std::vector<BsdfCase>& cases) {
   return HWY_DYNAMIC_DISPATCH(SampleDielectric)(cases);
+}
+std::vector<BsdfResult> run_eval_coated(const Coat& coat, const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(EvalCoated)(coat, cases);
+}
+std::vector<BsdfResult> run_sample_coated(const Coat& coat, const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(SampleCoated)(coat, cases);
 }
 }  // namespace testing
 }  // namespace metamer

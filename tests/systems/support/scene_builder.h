@@ -50,6 +50,14 @@ struct SceneBuilder {
     material.normalized = normalized;
     return material;
   }
+  Material coated(SpectrumId reflectance, SpectrumId eta, float alpha = 0) {
+    Material material;
+    material.kind = MaterialKind::coated;
+    material.reflectance = reflectance;
+    material.eta = eta;
+    material.alpha_x = material.alpha_y = alpha;
+    return material;
+  }
   Material dielectric(SpectrumId eta) {
     Material material;
     material.kind = MaterialKind::dielectric;

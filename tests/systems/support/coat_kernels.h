@@ -1,0 +1,32 @@
+// The coated BSDF's kernels on lists of cases, as bsdf_kernels.h: `albedo`, `eta`, `choice`, `schlick` of a case count.
+// All cases of a list share one table and roughness.
+#pragma once
+#include "systems/bsdf/reference_coat.h"
+#include "tests/systems/support/bsdf_kernels.h"
+
+namespace metamer::testing {
+
+// The rows for etas in [eta_least, eta_most].
+struct Coat {
+  Coat(double alpha_, double eta_least, double eta_most, bool schlick_ = false)
+      : alpha(alpha_), schlick(schlick_), rows(add_coat_rows(alpha, schlick, eta_least, eta_most, table)) {}
+  double alpha;
+  bool schlick;
+  Column<float> table;
+  CoatRows rows;
+
+  reference::CoatOptics optics(const BsdfCase& c) const {
+    return {{c.albedo[0], c.albedo[1], c.albedo[2], c.albedo[3]},
+            {c.eta[0], c.eta[1], c.eta[2], c.eta[3]},
+            alpha,
+            schlick,
+            table.data(),
+            rows};
+  }
+};
+
+// delta is set in draws from a smooth coat's mirror image; their pdf is a probability.
+std::vector<BsdfResult> run_eval_coated(const Coat& coat, const std::vector<BsdfCase>& cases);
+std::vector<BsdfResult> run_sample_coated(const Coat& coat, const std::vector<BsdfCase>& cases);
+
+}  // namespace metamer::testing
