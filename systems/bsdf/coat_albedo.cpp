@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "engine/simd/portable_math.h"
 #include "systems/bsdf/limits.h"
@@ -63,23 +64,21 @@ struct FacetView {
 struct Node {
   double x, weight;
 };
-template <size_t N>
-std::array<Node, N> gauss_legendre() {
-  std::array<Node, N> nodes;
-  for (size_t i = 0; i < N; ++i) {
-    double x = portable::cos(pi * (static_cast<double>(i) + 0.75) / (N + 0.5)), slope = 1;
+std::vector<Node> gauss_legendre(int count) {
+  std::vector<Node> nodes;
+  for (int i = 0; i < count; ++i) {
+    double x = portable::cos(pi * (i + 0.75) / (count + 0.5)), slope = 1;
     for (int step = 0; step < 8; ++step) {
       double p = x, before = 1;
-      for (size_t n = 2; n <= N; ++n) {
-        const double degree = static_cast<double>(n);
-        const double next = ((2 * degree - 1) * x * p - (degree - 1) * before) / degree;
+      for (int n = 2; n <= count; ++n) {
+        const double next = ((2 * n - 1) * x * p - (n - 1) * before) / n;
         before = p;
         p = next;
       }
-      slope = N * (x * p - before) / (x * x - 1);
+      slope = count * (x * p - before) / (x * x - 1);
       x -= p / slope;
     }
-    nodes[i] = {(1 - x) / 2, 1 / ((1 - x * x) * slope * slope)};
+    nodes.push_back({(1 - x) / 2, 1 / ((1 - x * x) * slope * slope)});
   }
   return nodes;
 }
@@ -88,20 +87,19 @@ std::array<Node, N> gauss_legendre() {
 struct Azimuth {
   double cosine, sine, weight;
 };
-constexpr size_t around = 16, outwards = 8;
-std::array<Azimuth, around> make_azimuths() {
-  std::array<Azimuth, around> azimuths;
-  const std::array<Node, around> nodes = gauss_legendre<around>();
-  for (size_t i = 0; i < around; ++i) {
-    const double rest = 1 - nodes[i].x, phi = pi * (1 - rest * rest * rest);
-    azimuths[i] = {portable::cos(phi), portable::sin(phi), nodes[i].weight * 3 * rest * rest};
+struct Quadrature {
+  std::vector<Azimuth> azimuths;
+  std::vector<Node> rings;
+};
+Quadrature make_quadrature(int around, int outwards) {
+  Quadrature quadrature;
+  for (const Node& node : gauss_legendre(around)) {
+    const double rest = 1 - node.x, phi = pi * (1 - rest * rest * rest);
+    quadrature.azimuths.push_back({portable::cos(phi), portable::sin(phi), node.weight * 3 * rest * rest});
   }
-  return azimuths;
-}
-std::array<Node, outwards> make_rings() {
-  std::array<Node, outwards> rings = gauss_legendre<outwards>();
-  for (Node& ring : rings) ring = {ring.x * (2 - ring.x), ring.weight * 2 * (1 - ring.x)};
-  return rings;
+  for (const Node& node : gauss_legendre(outwards))
+    quadrature.rings.push_back({node.x * (2 - node.x), node.weight * 2 * (1 - node.x)});
+  return quadrature;
 }
 
 void add_rough_row(double alpha, double eta, bool schlick, Column<float>& table) {
@@ -147,15 +145,16 @@ double smooth_coat_average(double eta, bool schlick) {
 }
 
 double rough_coat_albedo(double alpha, double eta, bool schlick, double cos_theta) {
-  static const std::array<Azimuth, around> azimuths = make_azimuths();
-  static const std::array<Node, outwards> rings = make_rings();
+  // Below 1 facets beyond the critical angle reflect all, an edge in the integrand.
+  static const Quadrature coarse = make_quadrature(16, 8), fine = make_quadrature(64, 48);
+  const Quadrature& quadrature = eta < 1 ? fine : coarse;
   const double z = std::max(cos_theta, 1e-8), x = std::sqrt(std::max(0.0, 1 - z * z));
   const double stretched = std::sqrt(alpha * alpha * x * x + z * z);
   const FacetView view{alpha, eta, schlick, x, z, alpha * x / stretched, z / stretched, stretched};
   double sum = 0;
-  for (const Azimuth& azimuth : azimuths) {
+  for (const Azimuth& azimuth : quadrature.azimuths) {
     const double edge = view.horizon(azimuth.cosine, azimuth.sine);
-    for (const Node& ring : rings) {
+    for (const Node& ring : quadrature.rings) {
       const double s = edge * ring.x;
       const FacetView::Reflection wi = view.reflection(azimuth.cosine, azimuth.sine, s);
       sum += azimuth.weight * ring.weight * edge * 2 * s * view.weight(wi);

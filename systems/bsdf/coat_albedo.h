@@ -33,12 +33,12 @@ double coat_fresnel(double eta, double cos_theta, bool schlick);
 // The average of a smooth surface's E, to 1e-6; eta > 0.
 double smooth_coat_average(double eta, bool schlick);
 
-// E of a rough surface; alpha at least least_alpha, to 1e-3.
+// E of a rough surface; alpha at least least_alpha, to 2e-3.
 double rough_coat_albedo(double alpha, double eta, bool schlick, double cos_theta);
 
 // Appends the rows for etas in [eta_least, eta_most], eta_least > 0, to the table: at most 0.02 apart, and at most 64.
-// alpha < smooth_alpha: smooth, rows of the average alone. Largest errors of interpolation: average 2e-5, E 5e-4, where
-// the etas are not on both sides of 1.
+// alpha < smooth_alpha: smooth, rows of the average alone. Largest errors of interpolation: average 2e-5, E 1.5e-3,
+// where the etas are not on both sides of 1.
 CoatRows add_coat_rows(double alpha, bool schlick, double eta_least, double eta_most, Column<float>& table);
 
 }  // namespace metamer

@@ -82,7 +82,7 @@ TEST(CoatAlbedo, TheRoughSurfaceReflectsTheIntegralOfItsLobe) {
   for (const double alpha : {0.02, 0.1, 0.4, 1.0})
     for (const double cos_o : {0.02, 0.1, 0.3, 0.6, 0.9, 1.0})
       for (const double eta : {1.333, 1.5, 0.75})
-        EXPECT_NEAR(rough_coat_albedo(alpha, eta, false, cos_o), integrated(alpha, eta, false, cos_o), 1e-3)
+        EXPECT_NEAR(rough_coat_albedo(alpha, eta, false, cos_o), integrated(alpha, eta, false, cos_o), 2e-3)
             << alpha << " " << cos_o << " " << eta;
   EXPECT_NEAR(rough_coat_albedo(0.3, 1.5, true, 0.3), integrated(0.3, 1.5, true, 0.3), 1e-3);
 }
@@ -118,7 +118,7 @@ TEST(CoatAlbedo, TheTableStaysWithinItsStatedError) {
                                                          rough_coat_albedo(alpha, eta, schlick, c)));
       }
       EXPECT_LT(average_error, 2e-5) << schlick;
-      EXPECT_LT(rough_error, 5e-4) << alpha << " " << schlick;
+      EXPECT_LT(rough_error, 1.5e-3) << alpha << " " << schlick;
     }
 }
 
