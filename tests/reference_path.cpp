@@ -105,14 +105,8 @@ struct Tracer {
       return plus(lit,
                   go_on(hit, frame, reference::sample_rough(wo, optics, choice, u, v), lambda_nm, together, events));
     }
-    if (kind == ShadeKind::smooth_coated || kind == ShadeKind::rough_coated) {
-      const reference::CoatOptics optics = coat(kind, row, lambda_nm);
-      const Spectrum4 lit =
-          direct(hit, frame, lambda_nm, [&](const Direction& wi) { return reference::eval_coated(wo, optics, wi); });
-      const double choice = random(), u = random(), v = random();
-      return plus(lit,
-                  go_on(hit, frame, reference::sample_coated(wo, optics, choice, u, v), lambda_nm, together, events));
-    }
+    if (kind == ShadeKind::smooth_coated || kind == ShadeKind::rough_coated)
+      return coated(hit, frame, wo, coat(kind, row, lambda_nm), lambda_nm, together, events);
     const reference::Roughness roughness =
         kind == ShadeKind::smooth_conductor
             ? reference::Roughness{}
@@ -127,6 +121,27 @@ struct Tracer {
     const double u = random(), v = random();
     return plus(
         lit, go_on(hit, frame, reference::sample_conductor(wo, roughness, optics, u, v), lambda_nm, together, events));
+  }
+
+  // Without chance both: the mirror image, and the body by its own direction.
+  Spectrum4 coated(const ReferenceHit& hit, const LocalFrame& frame, const Direction& wo,
+                   const reference::CoatOptics& optics, const Spectrum4& lambda_nm, bool together, uint32_t events) {
+    const auto evaluate = [&](const Direction& wi) { return reference::eval_coated(wo, optics, wi); };
+    const Spectrum4 lit = direct(hit, frame, lambda_nm, evaluate);
+    const double choice = random(), u = random(), v = random();
+    if (is_path || optics.alpha > 0)
+      return plus(lit,
+                  go_on(hit, frame, reference::sample_coated(wo, optics, choice, u, v), lambda_nm, together, events));
+    BsdfSample body = reference::sample_diffuse(wo, {1, 1, 1, 1}, u, v), mirror;
+    body.weight = evaluate(body.wi).f_cos;
+    for (double& weight : body.weight) weight /= body.pdf;
+    mirror.wi = {-wo.x, -wo.y, wo.z};
+    mirror.pdf = 1;
+    mirror.delta = true;
+    for (size_t j = 0; j < 4; ++j)
+      mirror.weight[j] = reference::coat_surface_albedo(optics, optics.eta[j], std::abs(wo.z));
+    return plus(lit, plus(go_on(hit, frame, body, lambda_nm, together, events),
+                          go_on(hit, frame, mirror, lambda_nm, together, events)));
   }
 
   reference::CoatOptics coat(ShadeKind kind, uint32_t row, const Spectrum4& lambda_nm) const {

@@ -96,6 +96,34 @@ TEST(CoatedMaterial, TheOracleAgreesUnderASkyAndAPointLight) {
   expect_agreement(*b.freeze(), 2048, 0.02);
 }
 
+// Local leaves the mirror image out, recursive follows it without chance; both light the body directly.
+TEST(CoatedMaterial, TheOracleAgreesAtTheOtherLevels) {
+  for (const Integrator integrator : {Integrator::local, Integrator::recursive}) {
+    SceneBuilder b(16, 16, 2048, 4);
+    b.scene.settings.integrator = integrator;
+    add_room(b);
+    const Entity lamp = b.add(rectangle(1.5f, 1.5f), b.diffuse(0.0), moved(0, 1.5, 0.5) * turned(90, 1, 0, 0));
+    b.emit(lamp, b.named("D65"), 0.01f);
+    b.light(LightKind::environment, b.named("D65"), 0.003f);
+    b.light(LightKind::point, b.named("A"), 0.01f, moved(-0.4, 0.9, 1.5));
+    expect_agreement(*b.freeze(), 4096, 0.02);
+  }
+}
+
+// In light of 1 from everywhere: recursive sees all of it, local all but the mirror image's F.
+TEST(CoatedMaterial, LevelsShowTheMirrorImageOrLeaveItOut) {
+  for (const double degrees : {0.0, 70.0})
+    for (const Integrator integrator : {Integrator::local, Integrator::recursive}) {
+      SceneBuilder b = in_even_light(degrees, 512);
+      b.scene.settings.integrator = integrator;
+      b.add(rectangle(1, 1), b.coated(unit_spectrum, b.constant(1.5)));
+      const double mirror = coat_fresnel(1.5, std::cos(glm::radians(degrees)), false);
+      SCOPED_TRACE(testing::Message() << degrees << " " << static_cast<int>(integrator));
+      expect_mean(
+          trace_radiances(*b.freeze()), [&](double) { return integrator == Integrator::local ? 1 - mirror : 1; }, 0.02);
+    }
+}
+
 // A lamp that is seen in the mirror image, in the lobe and by the body, large and small: sampling lights and sampling
 // the BSDF share it without counting any of it twice. Closed form: the lamp fills the hemisphere's cap of half angle w
 // around the normal; the body's part is g(1 - F) times the integral of (1 - F(theta)) 2 sin cos / (1 - F_mean).
