@@ -109,6 +109,13 @@ void read_coated(SceneContext& context, const JsonObject& object, Material& mate
   material.alpha_x = material.alpha_y = static_cast<float>(object.number("roughness", unit_interval, 0));
 }
 
+void read_coated(SceneContext& context, const JsonObject& object, Material& material) {
+  if (object.has("reflectance"))
+    material.reflectance = read_spectrum(context, *object.find("reflectance"), "reflectance", Quantity::reflectance);
+  read_dielectric(context, object, material);
+  material.alpha_x = material.alpha_y = static_cast<float>(object.number("roughness", unit_interval, 0));
+}
+
 }  // namespace
 
 std::optional<Material> read_material(SceneContext& context, const Json::Value& value) {
