@@ -3,43 +3,20 @@
 #include <benchmark/benchmark.h>
 
 #include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
 
-#include "scenes/library.h"
-#include "scenes/read_scene.h"
-#include "systems/freeze.h"
+#include "bench/scene_fixture.h"
 #include "systems/render.h"
 
 namespace metamer::bench {
 namespace {
 
 constexpr std::array<const char*, 3> scenes = {"cornell-spectral", "three-levels", "still-life"};
-constexpr uint32_t shorter_side = 256, samples_per_pixel = 16;
-
-std::unique_ptr<World> load_world(const std::string& name, Integrator integrator) {
-  Scene scene;
-  Diagnostics diagnostics;
-  std::unique_ptr<World> world;
-  if (read_scene(shipped_scene(name + ".json"), scene, diagnostics)) {
-    RenderSettings& settings = scene.settings;
-    const uint32_t shorter = std::min(settings.width, settings.height);
-    settings.width = settings.width * shorter_side / shorter;
-    settings.height = settings.height * shorter_side / shorter;
-    settings.samples_per_pixel = samples_per_pixel;
-    settings.integrator = integrator;
-    world = freeze(scene, diagnostics);
-  }
-  if (world == nullptr) {
-    std::fputs(format_diagnostics(diagnostics).c_str(), stderr);
-    std::exit(2);
-  }
-  return world;
-}
 
 void bench_integrator(benchmark::State& state, const char* scene, Integrator integrator) {
-  const std::unique_ptr<World> world = load_world(scene, integrator);
+  Scene changed = shipped_scene_for_frames(scene);
+  changed.settings.integrator = integrator;
+  const std::unique_ptr<World> world = frozen(changed);
   RenderStats stats;
   int64_t samples = 0;
   for (auto _ : state) {

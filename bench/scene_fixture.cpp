@@ -11,23 +11,25 @@
 namespace metamer::bench {
 namespace {
 
+[[noreturn]] void stop(const Diagnostics& diagnostics) {
+  std::fputs(format_diagnostics(diagnostics).c_str(), stderr);
+  std::exit(2);
+}
+
+void set_shorter_side(uint32_t pixels, RenderSettings& settings) {
+  const uint32_t shorter = std::min(settings.width, settings.height);
+  settings.width = settings.width * pixels / shorter;
+  settings.height = settings.height * pixels / shorter;
+}
+
 std::unique_ptr<World> load_world() {
   const char* chosen = std::getenv("METAMER_BENCH_SCENE");
   const std::string path = chosen != nullptr && *chosen != '\0' ? chosen : default_scene();
   Scene scene;
   Diagnostics diagnostics;
-  std::unique_ptr<World> world;
-  if (read_scene(path, scene, diagnostics)) {
-    const uint32_t shorter = std::min(scene.settings.width, scene.settings.height);
-    scene.settings.width = scene.settings.width * 512 / shorter;
-    scene.settings.height = scene.settings.height * 512 / shorter;
-    world = freeze(scene, diagnostics);
-  }
-  if (world == nullptr) {
-    std::fputs(format_diagnostics(diagnostics).c_str(), stderr);
-    std::exit(2);
-  }
-  return world;
+  if (!read_scene(path, scene, diagnostics)) stop(diagnostics);
+  set_shorter_side(512, scene.settings);
+  return frozen(scene);
 }
 
 void trace(const World& world, uint32_t depth, Batch& batch) {
@@ -47,6 +49,22 @@ void trace(const World& world, uint32_t depth, Batch& batch) {
 const World& bench_world() {
   static const std::unique_ptr<World> world = load_world();
   return *world;
+}
+
+Scene shipped_scene_for_frames(const char* name) {
+  Scene scene;
+  Diagnostics diagnostics;
+  if (!read_scene(shipped_scene(std::string(name) + ".json"), scene, diagnostics)) stop(diagnostics);
+  set_shorter_side(256, scene.settings);
+  scene.settings.samples_per_pixel = 16;
+  return scene;
+}
+
+std::unique_ptr<World> frozen(const Scene& scene) {
+  Diagnostics diagnostics;
+  std::unique_ptr<World> world = freeze(scene, diagnostics);
+  if (world == nullptr) stop(diagnostics);
+  return world;
 }
 
 std::unique_ptr<Batch> batch_at_depth(const World& world, uint32_t depth) {

@@ -70,9 +70,9 @@ inline constexpr uint32_t sorted_capacity = batch_capacity + shade_kind_count * 
 // needs a line in for_each_column and one in append_ray (systems/shade-inl.h).
 struct PathStream {
   uint32_t size = 0;
-  Columns<float, 3> origin;      // metres
-  Columns<float, 3> direction;   // unit length
-  Columns<float, 4> lambda_nm;   // hero first
+  Columns<float, 3> origin;     // metres
+  Columns<float, 3> direction;  // unit length
+  Columns<float, 4> lambda_nm;  // hero first; in RGB mode they stand for the channels, see engine/spectrum/color_mode.h
   Columns<float, 4> throughput;  // product of f cos / pdf; times the wavelengths' share after dispersion
   float* pdf_direction;          // per solid angle, of `direction` at its origin; 0: not sampled, or by a delta lobe
   float* eta_scale;              // (n of the first medium / n here)^2 so far: roulette must not see radiance scaling
@@ -145,7 +145,7 @@ struct Slots {
   uint32_t size = 0;
   bool are_roots = true;  // camera samples; false: further nodes of trees whose roots are accounted for already
   Columns<float, 4> lambda_nm, inv_pdf_nm;
-  Columns<float, 4> radiance;  // W m^-2 sr^-1 nm^-1, each wavelength on its own
+  Columns<float, 4> radiance;  // W m^-2 sr^-1 nm^-1, each wavelength on its own; in RGB mode a channel's, cd/m^2
   uint32_t *pixel, *sample;    // pixel of the tile (row-major), or dead_lane outside the picture; sample index
 };
 

@@ -2,6 +2,7 @@
 #define HWY_TARGET_INCLUDE "systems/accumulate.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 // Highway's headers come after foreach_target.
+#include "engine/spectrum/color_mode.h"
 #include "engine/spectrum/spectrum-inl.h"
 #include "engine/spectrum/wavelengths.h"
 #include "systems/lanes-inl.h"
@@ -27,6 +28,27 @@ void to_xyz(const World& world, const Slots& slots, const Columns<float, 3>& xyz
   }
 }
 
+// RGB mode: the three channels, each on its wavelength's primary.
+void channels_to_xyz(const World& world, const Slots& slots, const Columns<float, 3>& xyz) {
+  const Matrix3& matrix = coefficient_space(world.settings.color).to_xyz;
+  const auto primary = [&](size_t c, size_t channel) {
+    return splat(static_cast<float>(matrix[c][channel]) * world.settings.sensor_scale);
+  };
+  for (size_t i = 0; i < slots.size; i += lane_count()) {
+    VF sum[3] = {hn::Zero(FloatTag()), hn::Zero(FloatTag()), hn::Zero(FloatTag())};
+    for (size_t j = 0; j < 3; ++j) {
+      const VF lambda_nm = load(slots.lambda_nm[j], i), radiance = load(slots.radiance[j], i);
+      const MF is_red = hn::Gt(lambda_nm, splat(static_cast<float>(red_above_nm)));
+      const MF is_blue = hn::Lt(lambda_nm, splat(static_cast<float>(blue_below_nm)));
+      for (size_t c = 0; c < 3; ++c) {
+        const VF other = hn::IfThenElse(is_blue, primary(c, 2), primary(c, 1));
+        sum[c] = hn::MulAdd(radiance, hn::IfThenElse(is_red, primary(c, 0), other), sum[c]);
+      }
+    }
+    for (size_t c = 0; c < 3; ++c) store(sum[c], xyz[c], i);
+  }
+}
+
 }  // namespace
 }  // namespace metamer::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -35,10 +57,14 @@ HWY_AFTER_NAMESPACE();
 namespace metamer {
 
 HWY_EXPORT(to_xyz);
+HWY_EXPORT(channels_to_xyz);
 
 void accumulate(const World& world, const Slots& slots, TileFilm& film, SampleWeights weights) {
   alignas(column_alignment) float X[batch_capacity], Y[batch_capacity], Z[batch_capacity];
-  HWY_DYNAMIC_DISPATCH(to_xyz)(world, slots, {X, Y, Z});
+  if (world.settings.color == ColorMode::spectral)
+    HWY_DYNAMIC_DISPATCH(to_xyz)(world, slots, {X, Y, Z});
+  else
+    HWY_DYNAMIC_DISPATCH(channels_to_xyz)(world, slots, {X, Y, Z});
   const std::span<const uint32_t> pixel(slots.pixel, slots.size);
   uint8_t live[batch_capacity], recorded[batch_capacity];
   for (uint32_t i = 0; i < slots.size; ++i) {

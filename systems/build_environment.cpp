@@ -5,6 +5,7 @@
 
 #include "engine/schedule/workers.h"
 #include "engine/simd/portable_math.h"
+#include "engine/spectrum/color_mode.h"
 #include "engine/spectrum/rgb_columns.h"
 #include "systems/freeze.h"
 
@@ -59,6 +60,30 @@ void fit_unit(void* context, uint32_t, size_t unit) {
                  {out[0].data() + begin, out[1].data() + begin, out[2].data() + begin}, count);
 }
 
+// Four floats per texel: a spectrum as coefficients of a sigmoid and its scale.
+void store_spectra(const Image& image, Column<float>& texels) {
+  TexelColumns columns = split_channels(image);
+  const size_t count = columns.scale.size();
+  FitContext context{image.color_space, columns};
+  run_units(available_threads(), (count + texels_per_unit - 1) / texels_per_unit, Cancellation(), fit_unit, &context);
+  for (size_t texel = 0; texel < count; ++texel) {
+    for (int c = 0; c < 3; ++c) texels[4 * texel + c] = columns.coefficient[c][texel];
+    texels[4 * texel + 3] = columns.scale[texel];
+  }
+}
+
+// RGB mode: the three coefficients and 0. As for spectra, negative channels of the image count as 0.
+void store_coefficients(const Image& image, ColorMode color, Column<float>& texels) {
+  const Matrix3 matrix = image_to_coefficients(color, image.color_space);
+  for (size_t texel = 0; texel < texels.size() / 4; ++texel) {
+    Color3 rgb;
+    for (size_t c = 0; c < 3; ++c) rgb[c] = std::max(double{image.rgb[3 * texel + c]}, 0.0);
+    const Color3 coefficients = multiply(matrix, rgb);
+    for (size_t c = 0; c < 3; ++c) texels[4 * texel + c] = static_cast<float>(coefficients[c]);
+    texels[4 * texel + 3] = 0;
+  }
+}
+
 // The solid angle of a row's texels, relative to the mean over the image's square.
 double ring_weight(const Image& image, uint32_t y) {
   if (image.mapping != ImageMapping::latitude_longitude) return 1;
@@ -68,7 +93,7 @@ double ring_weight(const Image& image, uint32_t y) {
 
 }  // namespace
 
-void build_environment(const Image* image, const glm::dmat4& to_world, Environment& environment) {
+void build_environment(const Image* image, const glm::dmat4& to_world, ColorMode color, Environment& environment) {
   const glm::dmat3 rotation = orthonormal(glm::dmat3(to_world)), inverse = glm::transpose(rotation);
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column) {
@@ -79,17 +104,17 @@ void build_environment(const Image* image, const glm::dmat4& to_world, Environme
   environment.width = image->width;
   environment.height = image->height;
   environment.mapping = image->mapping;
-  TexelColumns columns = split_channels(*image);
-  const size_t count = columns.scale.size();
-  FitContext context{image->color_space, columns};
-  run_units(available_threads(), (count + texels_per_unit - 1) / texels_per_unit, Cancellation(), fit_unit, &context);
+  const size_t count = size_t{image->width} * image->height;
   environment.texels.resize(4 * count);
+  environment.has_coefficients = color != ColorMode::spectral;
+  if (environment.has_coefficients)
+    store_coefficients(*image, color, environment.texels);
+  else
+    store_spectra(*image, environment.texels);
   std::vector<double> weights(count);
   const Color3 luminance = rgb_to_xyz(image->color_space)[1];
   double sum = 0;
   for (size_t texel = 0; texel < count; ++texel) {
-    for (int c = 0; c < 3; ++c) environment.texels[4 * texel + c] = columns.coefficient[c][texel];
-    environment.texels[4 * texel + 3] = columns.scale[texel];
     const float* rgb = image->rgb.data() + 3 * texel;
     const double level = luminance[0] * rgb[0] + luminance[1] * rgb[1] + luminance[2] * rgb[2];
     weights[texel] = std::max(level, 0.0) * ring_weight(*image, static_cast<uint32_t>(texel / image->width));

@@ -145,7 +145,8 @@ void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, Worl
         return;
       }
       world.environment.light = static_cast<uint32_t>(world.lights.size());
-      build_environment(light.image == no_index ? nullptr : &scene.images[light.image], matrix, world.environment);
+      build_environment(light.image == no_index ? nullptr : &scene.images[light.image], matrix, world.settings.color,
+                        world.environment);
     }
     world.lights.push_back(abstract_light(matrix, light));
     if (world.lights[world.lights.size() - 1].shape == static_cast<uint32_t>(LightShape::distant_disk))

@@ -99,6 +99,7 @@ MaterialRow add_dielectric(const Material& material, World& world) {
   const bool disperses = !world.spectra.is_constant(material.eta);
   table.dispersive.push_back(disperses);
   world.branches = std::max(world.branches, disperses ? 5u : 2u);
+  world.disperses = world.disperses || disperses;
   return {ShadeKind::dielectric, static_cast<uint32_t>(table.eta.size() - 1)};
 }
 

@@ -5,6 +5,7 @@
 #include "engine/sampling/filters-inl.h"
 #include "engine/sampling/points-inl.h"
 #include "engine/sampling/warps-inl.h"
+#include "engine/spectrum/color_mode.h"
 #include "engine/spectrum/wavelengths-inl.h"
 #include "systems/dimensions.h"
 #include "systems/lanes-inl.h"
@@ -46,6 +47,21 @@ HWY_INLINE Ray camera_ray(const CameraRow& camera, VF x, VF y, VF lens_u, VF len
   return ray;
 }
 
+// RGB mode: the wavelengths that stand for the channels. Where indices of refraction differ between them the hero goes
+// on alone, so it must be each channel equally often: u in [0, 1) chooses it, the others follow in turn.
+HWY_INLINE void channel_wavelengths(const World& world, VF u, VF lambda_nm[4], VF inv_pdf_nm[4]) {
+  const std::array<double, 3>& channels = coefficient_space(world.settings.color).lambda_nm;
+  const VF third = splat(1.0f / 3), two_thirds = splat(2.0f / 3);
+  const MF keep = hn::Lt(u, third), turn_twice = hn::Ge(u, two_thirds);
+  const auto nm = [&](size_t j) { return splat(static_cast<float>(channels[j % 3])); };
+  for (size_t j = 0; j < 3; ++j) {
+    const VF turned = hn::IfThenElse(keep, nm(j), hn::IfThenElse(turn_twice, nm(j + 2), nm(j + 1)));
+    lambda_nm[j] = world.disperses ? turned : nm(j);
+  }
+  lambda_nm[3] = lambda_nm[2];
+  for (size_t j = 0; j < 4; ++j) inv_pdf_nm[j] = splat(1.0f);
+}
+
 void camera_rays_kernel(const World& world, std::span<const RayPacket> packets, const TileRect& tile, PathStream& paths,
                         Slots& slots) {
   const UintTag du;
@@ -53,6 +69,8 @@ void camera_rays_kernel(const World& world, std::span<const RayPacket> packets, 
   const VU lane = hn::Iota(du, 0);
   const uint32_t x_end = std::min(tile.x1, world.settings.width), y_end = std::min(tile.y1, world.settings.height);
   const WavelengthTable& wavelengths = wavelength_table();
+  const bool is_spectral = world.settings.color == ColorMode::spectral;
+  const size_t live = live_wavelengths(world.settings);
   size_t i = 0;
   for (const RayPacket& packet : packets) {
     for (size_t first = 0; first < column_lanes; first += step, i += step) {
@@ -70,8 +88,11 @@ void camera_rays_kernel(const World& world, std::span<const RayPacket> packets, 
       if (world.camera.lens_radius > 0) sample_2d(key, splat_u(lens_dimension), &lens_u, &lens_v);
       const Ray ray = camera_ray(world.camera, film_x, film_y, lens_u, lens_v);
       VF rotation, lambda_nm[4], inv_pdf_nm[4];
-      sample_2d(key, splat_u(wavelength_dimension), &u, &rotation);
-      sample_wavelengths(wavelengths, u, rotation, lambda_nm, inv_pdf_nm);
+      if (is_spectral || world.disperses) sample_2d(key, splat_u(wavelength_dimension), &u, &rotation);
+      if (is_spectral)
+        sample_wavelengths(wavelengths, u, rotation, lambda_nm, inv_pdf_nm);
+      else
+        channel_wavelengths(world, u, lambda_nm, inv_pdf_nm);
 
       // A ray that cannot be traced still takes its place in the packet; NaN has its sample refused and counted.
       const VF zero = hn::Zero(FloatTag());
@@ -82,7 +103,7 @@ void camera_rays_kernel(const World& world, std::span<const RayPacket> packets, 
       store(lambda_nm, paths.lambda_nm, i);
       const VU slot = hn::Add(lane, splat_u(static_cast<uint32_t>(i)));
       for (size_t j = 0; j < 4; ++j) {
-        store(splat(1.0f), paths.throughput[j], i);
+        store(splat(j < live ? 1.0f : 0.0f), paths.throughput[j], i);
         store(lambda_nm[j], slots.lambda_nm[j], i);
         store(inv_pdf_nm[j], slots.inv_pdf_nm[j], i);
         store(radiance, slots.radiance[j], i);

@@ -84,6 +84,11 @@ HWY_INLINE void add_texel(const Environment& environment, VI column, VI row, VF 
   const VI texel = hn::Add(hn::Mul(row, hn::Set(IntTag(), static_cast<int>(environment.width))), column);
   const VI at = hn::ShiftLeft<2>(texel);
   const float* texels = environment.texels.data();
+  if (environment.has_coefficients) {
+    for (int j = 0; j < 4; ++j)
+      factor[j] = hn::MulAdd(weight, gather(texels, hn::Add(at, channel_of(lambda_nm[j]))), factor[j]);
+    return;
+  }
   const VF c0 = gather(texels, at), c1 = gather(texels + 1, at), c2 = gather(texels + 2, at);
   const VF scale = hn::Mul(weight, gather(texels + 3, at));
   for (int j = 0; j < 4; ++j) factor[j] = hn::MulAdd(scale, sigmoid_polynomial(c0, c1, c2, lambda_nm[j]), factor[j]);

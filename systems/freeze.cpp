@@ -8,6 +8,11 @@ std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   auto world = std::make_unique<World>();
   world->settings = scene.settings;
   world->spectra = scene.spectra;
+  if (scene.settings.color != ColorMode::spectral && scene.settings.band_count > 0)
+    diagnostics.error({},
+                      fmt::format("there are no wavelengths in color mode '{}' for the {} bands of a spectral film: "
+                                  "'spectral' goes with color 'spectral' only",
+                                  color_mode_name(scene.settings.color), scene.settings.band_count));
   const Filter& filter = scene.settings.filter;
   world->filter = make_pixel_filter(filter.kind, filter.radius_x, filter.radius_y, filter.sigma);
   const std::vector<glm::dmat4> to_world = build_transforms(scene, diagnostics);
@@ -15,6 +20,7 @@ std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   build_geometry(scene, to_world, materials, *world, diagnostics);
   build_lights(scene, to_world, *world, diagnostics);
   build_camera(scene, to_world, *world, diagnostics);
+  build_coefficients(*world);
   if (world->zero_area_triangles > 0)
     diagnostics.warning({}, fmt::format("{} no area and cannot be hit",
                                         world->zero_area_triangles == 1

@@ -28,11 +28,15 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
                     World& world, Diagnostics& diagnostics);
 
-// The environment's image (null: none) as columns of spectra and a density, and its rotation.
-void build_environment(const Image* image, const glm::dmat4& to_world, Environment& environment);
+// The environment's image (null: none) as columns of spectra, or of the mode's coefficients, and a density, and its
+// rotation.
+void build_environment(const Image* image, const glm::dmat4& to_world, ColorMode color, Environment& environment);
 
 // Point, directional and environment lights, then the choice among all lights by power.
 void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics);
+
+// In RGB mode: every spectrum of the world's columns gets its coefficients, by its role. After all that fills columns.
+void build_coefficients(World& world);
 
 void build_camera(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics);
 

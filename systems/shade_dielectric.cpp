@@ -25,6 +25,7 @@ HWY_INLINE DielectricOptics dielectric_optics(const World& world, const ShadeStr
 
 void shade_dielectric_kernel(const World& world, uint32_t depth, Branch branch, ShadeStream& shade) {
   const VF zero = hn::Zero(FloatTag()), one = splat(1.0f);
+  const VF hero_weight = splat(static_cast<float>(live_wavelengths(world.settings)));
   const Group& group = group_of(shade, ShadeKind::dielectric);
   for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
     DielectricOptics optics = dielectric_optics(world, shade, i, material_row(shade, i));
@@ -37,9 +38,9 @@ void shade_dielectric_kernel(const World& world, uint32_t depth, Branch branch, 
     const Vec3 wo = to_local(frame, load(shade.wo, i));
     const VF u = branch_number(shade, i, depth, branch);
     DielectricSample next = sample_dielectric(wo, optics, u);
-    // Drawn, the hero stands for all four wavelengths of the mean that accumulate takes.
+    // Drawn, the hero stands for all wavelengths that accumulate sums.
     const MF stands_alone = branch == Branch::drawn ? next.terminate_secondary : hn::Lt(one, zero);
-    next.weight[0] = hn::IfThenElse(stands_alone, hn::Mul(next.weight[0], splat(4.0f)), next.weight[0]);
+    next.weight[0] = hn::IfThenElse(stands_alone, hn::Mul(next.weight[0], hero_weight), next.weight[0]);
     keep_branch(branch, disperses, next.transmitted, next.probability, next.weight);
     store_next(frame, next.wi, next.weight, zero, shade, i);
     const VF eta = hn::IfThenElse(hn::Lt(wo.z, zero), hn::Div(one, optics.eta[0]), optics.eta[0]);

@@ -10,6 +10,7 @@
 #include "engine/diagnostics.h"
 #include "engine/ecs/components.h"
 #include "engine/sampling/filters.h"
+#include "engine/spectrum/color_mode.h"
 #include "engine/spectrum/spectrum_set.h"
 
 namespace metamer {
@@ -59,6 +60,7 @@ struct RenderSettings {
   Filter filter;
   float sensor_scale = 1;    // exposure time times ISO / 100: multiplies what the film records
   float exposure_stops = 0;  // tone mapping only
+  ColorMode color = ColorMode::spectral;
 };
 
 class NameTable {

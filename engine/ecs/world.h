@@ -106,7 +106,9 @@ struct Environment {
   uint32_t light = no_index;  // its row of lights; no_index: black
   uint32_t width = 0, height = 0;
   ImageMapping mapping = ImageMapping::latitude_longitude;
-  Column<float> texels;       // four per texel: sigmoid coefficients c0 c1 c2 and scale
+  // Four per texel: sigmoid coefficients c0 c1 c2 and scale; in RGB mode the texel's three coefficients and 0.
+  Column<float> texels;
+  bool has_coefficients = false;
   Distribution2D density;     // over the image's square, proportional to the texels' luminance times the measure
   double mean_luminance = 1;  // of the image over the sphere
   float to_world[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // rotation, row-major; to_local is its inverse
@@ -122,6 +124,11 @@ struct CameraRow {
   float lens_radius = 0, focal_distance = 1;
   float forward[3] = {};  // unit depth along the camera's axis, for the plane of focus
 };
+
+// How many of a path's four wavelengths carry light. In RGB mode they are the channels' three, see color_mode.h.
+inline uint32_t live_wavelengths(const RenderSettings& settings) {
+  return settings.color == ColorMode::spectral ? 4 : 3;
+}
 
 // Embree's scene: known to build_accelerator, intersect and shadow only.
 struct Accelerator;
@@ -148,6 +155,7 @@ struct World {
   RenderSettings settings;
   PixelFilter filter;
   uint32_t branches = 1;        // rays that leave one smooth surface at most: 2 where light is refracted, 5 dispersed
+  bool disperses = false;       // some medium's index differs between wavelengths
   bool needs_tangents = false;  // an anisotropic material is present
   bool has_instances = false;   // some triangles are in their object's space
   bool has_quadrics = false;

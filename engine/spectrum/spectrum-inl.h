@@ -7,6 +7,7 @@
 #endif
 
 #include "engine/simd/vec3-inl.h"
+#include "engine/spectrum/color_mode.h"
 #include "engine/spectrum/observers.h"
 #include "engine/spectrum/rgb_fit.h"
 #include "engine/spectrum/spectrum_set.h"
@@ -52,13 +53,29 @@ HWY_INLINE VF table_value(const float* HWY_RESTRICT tables, VI offset, const Tab
   return hn::MulAdd(at.fraction, hn::Sub(above, below), below);
 }
 
+// RGB mode: the channel that a path's wavelength stands for, 0 red, 1 green, 2 blue.
+HWY_INLINE VI channel_of(VF lambda_nm) {
+  const IntTag di;
+  const auto is_below = [&](double nm) {  // -1 or 0
+    return hn::VecFromMask(di, hn::RebindMask(di, hn::Lt(lambda_nm, splat(static_cast<float>(nm)))));
+  };
+  return hn::Neg(hn::Add(is_below(red_above_nm), is_below(blue_below_nm)));
+}
+
 // Spectrum `id` of each lane at four wavelengths in nm, clamped to 360..830. Ids must be valid in every lane, dead
 // ones included (0 will do). Twin: SpectrumSet::value(). Error: that of sigmoid_polynomial() times |scale table|, plus
-// 3e-7 |scale| max |table|.
+// 3e-7 |scale| max |table|. In RGB mode the coefficients of the channels, exactly; a path's fourth wavelength carries
+// nothing there and repeats the third.
 HWY_INLINE void eval_spectrum4(const SpectrumView& view, VU id, const VF lambda_nm[4], VF out[4]) {
   static_assert(spectrum_row_floats == 8);
   const FloatTag d;
   const VI row = hn::BitCast(IntTag(), hn::ShiftLeft<3>(id));
+  if (view.has_coefficients) {
+    const float* coefficients = view.rows + spectrum_row_coefficients;
+    for (int i = 0; i < 3; ++i) out[i] = hn::GatherIndex(d, coefficients, hn::Add(row, channel_of(lambda_nm[i])));
+    out[3] = out[2];
+    return;
+  }
   const VF c0 = hn::GatherIndex(d, view.rows, row);
   const VF c1 = hn::GatherIndex(d, view.rows + 1, row);
   const VF c2 = hn::GatherIndex(d, view.rows + 2, row);

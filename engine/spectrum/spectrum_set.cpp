@@ -15,9 +15,11 @@ namespace {
 
 constexpr double largest_value = 1e38;  // within single precision, with room for a sum
 constexpr float saturated = static_cast<float>(sigmoid_saturated);
+constexpr float not_given = std::numeric_limits<float>::infinity();
+constexpr std::array<float, 3> no_coefficients = {not_given, not_given, not_given};
 
 SpectrumRow flat_row(double scale, uint32_t table = 0) {
-  return {0.0f, 0.0f, saturated, static_cast<float>(scale), table, {0, 0, 0}};
+  return {0.0f, 0.0f, saturated, static_cast<float>(scale), table, no_coefficients};
 }
 
 bool representable(double value) { return std::abs(value) <= largest_value; }  // false for NaN
@@ -67,7 +69,10 @@ SpectrumSet::SpectrumSet() {
 
 SpectrumId SpectrumSet::append(const SpectrumRow& row) {
   SpectrumRow canonical = row;
-  if (canonical.scale == 0.0f) canonical = flat_row(0.0);
+  if (canonical.scale == 0.0f) {
+    canonical = flat_row(0.0);
+    canonical.coefficients = row.coefficients;
+  }
   const uint64_t hash = hash_words(&canonical, spectrum_row_floats);
   const auto [first, last] = row_of_hash_.equal_range(hash);
   for (auto it = first; it != last; ++it) {
@@ -137,12 +142,8 @@ SpectrumResult SpectrumSet::add_rgb(const Color3& rgb, RgbKind kind, ColorSpace 
   if (rgb[0] != rgb[1] || rgb[1] != rgb[2]) {
     const double scale = kind == RgbKind::albedo ? 1.0 : 2.0 * std::max({rgb[0], rgb[1], rgb[2]});
     const SigmoidCoefficients c = fit_sigmoid(space, {rgb[0] / scale, rgb[1] / scale, rgb[2] / scale}).c;
-    row = {static_cast<float>(c[0]),
-           static_cast<float>(c[1]),
-           static_cast<float>(c[2]),
-           static_cast<float>(scale),
-           0,
-           {0, 0, 0}};
+    row = {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]), static_cast<float>(scale), 0,
+           no_coefficients};
   }
   if (kind != RgbKind::illuminant) return {append(row), {}};
   const StoredTable white = store_table(white_illuminant(space));
@@ -189,7 +190,15 @@ SpectrumResult SpectrumSet::scaled(SpectrumId id, double factor) {
   const double scale = row.scale * factor;
   if (!representable(scale)) return not_representable(scale);
   row.scale = static_cast<float>(scale);
+  row.coefficients = no_coefficients;
   return {append(row), {}};
+}
+
+SpectrumId SpectrumSet::with_coefficients(SpectrumId id, const Color3& coefficients) {
+  SpectrumRow row = rows_[id];
+  for (size_t c = 0; c < 3; ++c) row.coefficients[c] = static_cast<float>(coefficients[c]);
+  has_coefficients_ = true;
+  return append(row);
 }
 
 SpectrumResult SpectrumSet::product(SpectrumId a, SpectrumId b) {
@@ -202,7 +211,7 @@ SpectrumResult SpectrumSet::product(SpectrumId a, SpectrumId b) {
 }
 
 SpectrumView SpectrumSet::view() const {
-  return {reinterpret_cast<const float*>(rows_.data()), tables_.data(), lambda_stride};
+  return {reinterpret_cast<const float*>(rows_.data()), tables_.data(), lambda_stride, has_coefficients_};
 }
 
 double SpectrumSet::value(SpectrumId id, double lambda_nm) const {

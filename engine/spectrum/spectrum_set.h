@@ -1,7 +1,9 @@
 // All spectra of a scene, in the form kernels read: a row of eight floats each, and the tables some rows refer to.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,20 +22,24 @@ inline constexpr SpectrumId unit_spectrum = 1;
 
 // value(lambda) = scale * S(c0 t^2 + c1 t + c2) * table(lambda), see rgb_fit.h for t and S. Table 0 is all ones and is
 // not fetched by kernels. Tables are linear between 1 nm samples; lambda is clamped to 360..830 nm.
+// Of RGB mode (color_mode.h) the row holds three coefficients, which follow from the spectrum and its role: a spectrum
+// of two roles has two rows. Until they are given they are infinite, so that samples made with them are refused.
 struct alignas(32) SpectrumRow {
   float c0, c1, c2;
   float scale;
   uint32_t table;
-  uint32_t spare[3];
+  std::array<float, 3> coefficients;
   bool operator==(const SpectrumRow&) const = default;
 };
 inline constexpr size_t spectrum_row_floats = sizeof(SpectrumRow) / sizeof(float);
+inline constexpr size_t spectrum_row_coefficients = offsetof(SpectrumRow, coefficients) / sizeof(float);
 
 // What kernels get; valid while the set does not change.
 struct SpectrumView {
   const float* rows;    // spectrum_row_floats per spectrum
   const float* tables;  // table_stride floats per table, the first for 360 nm
   size_t table_stride;
+  bool has_coefficients;  // RGB mode: the rows' coefficients stand for them
 };
 
 // How three numbers become a spectrum. albedo: a reflectance, each channel in 0..1. unbounded: channels >= 0, scale =
@@ -73,13 +79,17 @@ class SpectrumSet {
   SpectrumResult scaled(SpectrumId id, double factor);
   SpectrumResult product(SpectrumId a, SpectrumId b);
 
+  // The spectrum with coefficients of RGB mode, which are kept in single precision; from the first on the view has
+  // them.
+  SpectrumId with_coefficients(SpectrumId id, const Color3& coefficients);
+
   size_t size() const { return rows_.size(); }
   size_t table_count() const { return tables_.size() / lambda_stride; }
   size_t bytes() const { return rows_.bytes() + tables_.bytes(); }
   const SpectrumRow& row(SpectrumId id) const { return rows_[id]; }
   SpectrumView view() const;
 
-  // The double-precision twin of eval_spectrum4.
+  // The double-precision twin of eval_spectrum4 without coefficients.
   double value(SpectrumId id, double lambda_nm) const;
   Samples samples(SpectrumId id) const;
   bool is_constant(SpectrumId id) const;
@@ -99,6 +109,7 @@ class SpectrumSet {
   };
   StoredTable store_table(const Samples& samples);
 
+  bool has_coefficients_ = false;
   Column<SpectrumRow> rows_;
   Column<float> tables_;
   std::unordered_multimap<uint64_t, SpectrumId> row_of_hash_;

@@ -7,8 +7,8 @@ constexpr bool required = true;
 
 constexpr KeySpec scene[] = {{"$schema"}, {"metamer", required}, {"units"},  {"settings"},
                              {"spectra"}, {"materials"},         {"meshes"}, {"entities", required}};
-constexpr KeySpec settings[] = {{"size"},    {"samples"}, {"max_depth"}, {"seed"},         {"integrator"},
-                                {"shadows"}, {"filter"},  {"exposure"},  {"sensor_scale"}, {"spectral"}};
+constexpr KeySpec settings[] = {{"size"},   {"samples"},  {"max_depth"},    {"seed"},     {"integrator"}, {"shadows"},
+                                {"filter"}, {"exposure"}, {"sensor_scale"}, {"spectral"}, {"color"}};
 constexpr KeySpec filter_box[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_triangle[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_gaussian[] = {{"type", required}, {"radius"}, {"sigma"}};

@@ -65,6 +65,7 @@ RenderSettings read_settings(const SceneContext& context, const Json::Value& val
   settings.exposure_stops = object.number_f("exposure", stops, settings.exposure_stops);
   settings.sensor_scale = object.number_f("sensor_scale", positive, settings.sensor_scale);
   if (const Json::Value* spectral = object.find("spectral")) settings.band_count = read_band_count(context, *spectral);
+  settings.color = static_cast<ColorMode>(object.choice("color", color_mode_names(), 0));
   if (const Json::Value* filter = object.find("filter")) settings.filter = read_filter(context, *filter);
   return settings;
 }

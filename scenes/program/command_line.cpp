@@ -24,6 +24,7 @@ constexpr const char* main_footer = R"(Examples:
   metamer render cornell-box/scene.pbrt --spp 64   writes cornell-box.exr and cornell-box.png here
   metamer develop cornell-box.exr -o look.png --tonemap agx --exposure auto
   metamer match 500 -o match.png                   the amounts of three lamps that look like 500 nm
+  metamer compare cornell-box.json                 what RGB rendering gets wrong
   metamer info kitchen.json
   metamer render --help                            all flags of a command
 
@@ -59,7 +60,7 @@ constexpr const char* info_footer = R"(Examples:
 
 // Flags as text, the way they were written.
 struct RenderTexts {
-  std::string samples_per_pixel, size, threads, tile, seed, max_depth, spectral, exposure, integrator;
+  std::string samples_per_pixel, size, threads, tile, seed, max_depth, spectral, exposure, integrator, color;
   bool no_shadows = false;
   LookTexts look;
 };
@@ -90,6 +91,10 @@ void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
   render->add_flag("--no-shadows", texts.no_shadows, "Light sources shine through everything");
   option("--spectral", texts.spectral, "[N]",
          "Record the mean radiance of N bands from 380 to 740 nm too, 36 if N is not given; 0: none");
+  option("--color", texts.color, "MODE",
+         fmt::format("{}: light on sampled wavelengths, or as three coefficients, faster and less true; spectral if "
+                     "not given",
+                     fmt::join(color_mode_names(), ", ")));
   option("--exposure", texts.exposure, "STOPS", "Brightens the PNG by powers of 2; the EXR stays as it is");
   add_look_flags(*render, texts.look);
   option("--stats", arguments.stats, "STATS.json", "Write times, rays and memory there");
@@ -135,10 +140,10 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
 }
 
 std::string unknown_command(const std::string& word) {
-  return fmt::format("unknown command '{}'{}; there are render, develop, match, metamers and info", word,
+  return fmt::format("unknown command '{}'{}; there are render, develop, match, metamers, compare and info", word,
                      word.find('.') != std::string::npos
                          ? fmt::format(" (did you mean 'metamer render {}'?)", word)
-                         : suggestion(word, {"render", "develop", "match", "metamers", "info"}));
+                         : suggestion(word, {"render", "develop", "match", "metamers", "compare", "info"}));
 }
 
 // The argument without a flag, and what it names.
@@ -167,6 +172,8 @@ void note_extras(const CLI::App& app, const CLI::App* command, Mistakes& mistake
   if (has_unknown_flag || unexpected.empty()) return;
   if (command == nullptr)
     mistakes.push_back(unknown_command(unexpected));
+  else if (command->get_name() == "compare")
+    mistakes.push_back(fmt::format("unexpected argument '{}'", unexpected));
   else
     mistakes.push_back(fmt::format("unexpected argument '{}': one {} at a time, and '{}' was named already", unexpected,
                                    input_of(*command).second,
@@ -194,6 +201,9 @@ SceneOverrides parse_overrides(const CLI::App& render, const RenderTexts& texts,
     overrides.band_count = parse_count("--spectral", texts.spectral, 0, max_band_count, mistakes);
   if (given("--exposure"))
     overrides.exposure_stops = parse_real("--exposure", texts.exposure, -largest_exposure, largest_exposure, mistakes);
+  if (given("--color"))
+    if (const auto index = parse_name("--color", texts.color, color_mode_names(), mistakes))
+      overrides.color = static_cast<ColorMode>(*index);
   return overrides;
 }
 
@@ -267,6 +277,9 @@ Command parse_command_line(int argc, char** argv) {
   MetamersArguments metamers_arguments;
   ObserverTexts metamers_texts;
   add_metamers(app, metamers_arguments, metamers_texts);
+  CompareArguments compare_arguments;
+  CompareTexts compare_texts;
+  add_compare(app, compare_arguments, compare_texts);
   add_info(app, info_arguments);
   for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
   try {
@@ -293,15 +306,19 @@ Command parse_command_line(int argc, char** argv) {
     parse_match(*command, match_texts, match_arguments, mistakes);
   if (command != nullptr && command->get_name() == "metamers")
     parse_metamers(*command, metamers_texts, metamers_arguments, mistakes);
+  if (command != nullptr && command->get_name() == "compare")
+    parse_compare(*command, compare_texts, compare_arguments, mistakes);
   fail_if_any(mistakes);
   if (wants_version) return ShowVersion{};
   if (command == nullptr)
-    throw Failure(exit_wrong_input,
-                  "a command was expected: render, develop, match, metamers or info (metamer --help says more)");
+    throw Failure(
+        exit_wrong_input,
+        "a command was expected: render, develop, match, metamers, compare or info (metamer --help says more)");
   if (command->get_name() == "render") return render_arguments;
   if (command->get_name() == "develop") return develop_arguments;
   if (command->get_name() == "match") return match_arguments;
   if (command->get_name() == "metamers") return metamers_arguments;
+  if (command->get_name() == "compare") return compare_arguments;
   return info_arguments;
 }
 

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "engine/ecs/scene.h"
+#include "scenes/program/compare_arguments.h"
 #include "scenes/program/match_arguments.h"
 #include "systems/write_frame.h"
 
@@ -18,6 +19,7 @@ struct SceneOverrides {
   std::optional<float> exposure_stops;
   std::optional<Integrator> integrator;
   bool no_shadows = false;  // false: what the scene says
+  std::optional<ColorMode> color;
 };
 
 struct RenderArguments {
@@ -53,8 +55,8 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<RenderArguments, DevelopArguments, MatchArguments, MetamersArguments, InfoArguments,
-                             ShowVersion, ShowText>;
+using Command = std::variant<RenderArguments, DevelopArguments, MatchArguments, MetamersArguments, CompareArguments,
+                             InfoArguments, ShowVersion, ShowText>;
 
 // Throws Failure (exit 2) with a line for each mistake.
 Command parse_command_line(int argc, char** argv);

@@ -121,6 +121,7 @@ void print_table(const SceneInfo& info, const std::string& path) {
                            s.max_depth, s.seed));
   row("integrator", fmt::format("{}{}", integrator_name(s.integrator), s.shadows ? "" : ", without shadows"));
   if (s.band_count > 0) row("film", fmt::format("{} bands from {} to {} nm", s.band_count, band_min_nm, band_max_nm));
+  row("color", std::string(color_mode_name(s.color)));
   row("entities", fmt::format("{}", info.entities));
   row("components", listed(info.components));
   row("shapes", listed(info.shapes) + fmt::format("; {} distinct meshes", info.meshes));
@@ -166,6 +167,7 @@ void print_json(const SceneInfo& info, const std::string& path, const LoadedScen
   json["integrator"] = std::string(integrator_name(info.settings.integrator));
   json["shadows"] = info.settings.shadows;
   json["bands"] = info.settings.band_count;
+  json["color"] = std::string(color_mode_name(info.settings.color));
   json["entities"] = static_cast<Json::UInt64>(info.entities);
   json["components"] = to_json(info.components);
   json["shapes"] = to_json(info.shapes);

@@ -38,6 +38,7 @@ void apply(const SceneOverrides& overrides, RenderSettings& settings) {
   settings.seed = overrides.seed.value_or(settings.seed);
   settings.band_count = overrides.band_count.value_or(settings.band_count);
   settings.exposure_stops = overrides.exposure_stops.value_or(settings.exposure_stops);
+  settings.color = overrides.color.value_or(settings.color);
 }
 
 template <class... Columns>

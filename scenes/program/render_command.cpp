@@ -45,6 +45,7 @@ WriteSettings write_settings(const RenderArguments& arguments, const Outputs& ou
                            {"integrator", std::string(integrator_name(settings.integrator))},
                            {"shadows", settings.shadows ? "true" : "false"},
                            {"filter", std::string(filter_name(settings.filter.kind))},
+                           {"color", std::string(color_mode_name(settings.color))},
                            {exposure_setting, fmt::format("{}", settings.exposure_stops)}};
   if (settings.band_count > 0) write.header.settings.emplace_back("spectral", std::to_string(settings.band_count));
   write.look = arguments.look;

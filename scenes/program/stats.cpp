@@ -32,6 +32,7 @@ Json::Value to_json(const FrameReport& report) {
   json["max_depth"] = report.settings.max_depth;
   json["integrator"] = std::string(integrator_name(report.settings.integrator));
   json["shadows"] = report.settings.shadows;
+  json["color"] = std::string(color_mode_name(report.settings.color));
   json["samples_per_pixel"] = report.settings.samples_per_pixel;
   json["fewest_samples_per_pixel"] = count(report.samples.fewest);
   json["most_samples_per_pixel"] = count(report.samples.most);

@@ -90,6 +90,30 @@ double stated_error(const SpectrumSet& set, uint32_t id, double lambda_nm) {
   return std::abs(row.scale) * largest * (3e-7 + 2e-7 + 1e-7 * size * slope);
 }
 
+TEST(SpectrumKernel, InRgbModeReadsTheCoefficientOfEachChannel) {
+  for (const ColorMode mode : {ColorMode::rgb, ColorMode::lamps}) {
+    Batch batch;
+    std::vector<SpectrumId> given;
+    for (size_t i = 0, spectra = batch.set.size(); i < spectra; ++i)
+      given.push_back(batch.set.with_coefficients(static_cast<SpectrumId>(i), {double(i), i + 0.25, i + 0.5}));
+    for (size_t i = 0; i < Batch::rows; ++i) {
+      batch.id[i] = given[batch.id[i]];
+      for (size_t j = 0; j < 4; ++j)
+        batch.lambda_nm[j * Batch::rows + i] =
+            static_cast<float>(coefficient_space(mode).lambda_nm[(std::min<size_t>(j, 2) + i) % 3]);
+    }
+    std::vector<float> out(4 * Batch::rows);
+    for_each_target([&] {
+      HWY_DYNAMIC_DISPATCH(eval_columns)
+      (batch.set.view(), batch.id.data(), batch.lambda_nm.data(), out.data(), Batch::rows);
+      for (size_t i = 0; i < Batch::rows; ++i)
+        for (size_t j = 0; j < 4; ++j)
+          ASSERT_EQ(out[j * Batch::rows + i],
+                    batch.set.row(batch.id[i]).coefficients[(std::min<size_t>(j, 2) + i) % 3]);
+    });
+  }
+}
+
 TEST(SpectrumKernel, AgreesWithItsTwinWithinTheStatedError) {
   const Batch batch;
   std::vector<float> out(4 * Batch::rows);

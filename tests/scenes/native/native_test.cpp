@@ -74,6 +74,7 @@ TEST(Native, ReadsEveryKey) {
   EXPECT_EQ(s.exposure_stops, 1.5f);
   EXPECT_EQ(s.sensor_scale, 2);
   EXPECT_EQ(s.band_count, 18u);
+  EXPECT_EQ(s.color, ColorMode::spectral);
   EXPECT_EQ(r.scene.meshes.size(), 2u);
   EXPECT_EQ(r.scene.registry.table<Light>().size(), 16u);
   EXPECT_EQ(r.scene.registry.table<Material>().size(), 9u);

@@ -81,6 +81,10 @@ TEST_F(RenderCommand, FlagsOverrideTheScene) {
   EXPECT_EQ(sample_totals(film).most, 7u);
   EXPECT_EQ(header.seed, 9u);
   EXPECT_THAT(header.settings, testing::Contains(testing::Pair("max_depth", "2")));
+  EXPECT_THAT(header.settings, testing::Contains(testing::Pair("color", "spectral")));
+  ASSERT_EQ(run({"render", "small.json", "-q", "--color", "lamps"}).exit_code, 0);
+  ASSERT_EQ(read_film((folder() / "small.exr").string(), film, header), std::nullopt);
+  EXPECT_THAT(header.settings, testing::Contains(testing::Pair("color", "lamps")));
 }
 
 TEST_F(RenderCommand, SeedsDepthsAndExposuresMakeADifferenceWhereTheyShould) {
