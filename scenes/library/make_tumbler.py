@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 """Writes tumbler-glass.ply and tumbler-water.ply, the bodies of revolution of tumbler.json: a drinking glass, and water
-that reaches half into its wall. Lengths in metres, y up."""
+that reaches half into its wall. Lengths in centimetres, y up."""
 import math
 import pathlib
 
 SEGMENTS = 96
-FLOOR, WALL, HEIGHT, LEVEL = 0.008, 0.0025, 0.1, 0.078
+FLOOR, WALL, HEIGHT, LEVEL = 0.8, 0.25, 10, 7.8
 
 
 def outer(y):
     """Radius of the outside at height y: a little wider above."""
-    return 0.034 + 0.06 * y
+    return 3.2 + 0.06 * y
 
 
 def revolve(profile):
@@ -48,6 +48,9 @@ def inner(y):
     return outer(y) - WALL
 
 
-write("tumbler-glass.ply", [(0, 0), (outer(0), 0), (outer(HEIGHT), HEIGHT), (inner(HEIGHT), HEIGHT), (inner(FLOOR), FLOOR), (0, FLOOR)])
+write(
+    "tumbler-glass.ply",
+    [(0, 0), (outer(0), 0), (outer(HEIGHT), HEIGHT), (inner(HEIGHT), HEIGHT), (inner(FLOOR), FLOOR), (0, FLOOR)],
+)
 middle = WALL / 2
 write("tumbler-water.ply", [(0, FLOOR / 2), (inner(FLOOR) + middle, FLOOR / 2), (inner(LEVEL) + middle, LEVEL), (0, LEVEL)])
