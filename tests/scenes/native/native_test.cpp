@@ -103,7 +103,7 @@ TEST(Native, ReadsEveryKey) {
   EXPECT_EQ(r.get<Material>("made").alpha_y, 0.2f);
   EXPECT_NEAR(r.scene.spectra.value(r.get<Material>("ice").eta, 550), 1.31, 1e-6);
   EXPECT_NEAR(r.scene.spectra.value(r.get<Material>("ball").reflectance, 500), 0.35, 1e-6);
-  EXPECT_EQ(r.scene.location(r.find("ball")).line, 147u);
+  EXPECT_EQ(r.scene.location(r.find("ball")).line, 148u);
 }
 
 TEST(Native, AppliesOperationsFirstToLastAndUnits) {
