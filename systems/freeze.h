@@ -32,7 +32,7 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
 // rotation.
 void build_environment(const Image* image, const glm::dmat4& to_world, ColorMode color, Environment& environment);
 
-// Point, directional and environment lights, then the choice among all lights by power.
+// Lights that are no shapes (see light_rows.h), then the choice among all lights by power.
 void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics);
 
 // In RGB mode: every spectrum of the world's columns gets its coefficients, by its role. After all that fills columns.

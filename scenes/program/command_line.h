@@ -8,6 +8,7 @@
 #include "engine/ecs/scene.h"
 #include "scenes/program/compare_arguments.h"
 #include "scenes/program/match_arguments.h"
+#include "scenes/program/sky_arguments.h"
 #include "systems/write_frame.h"
 
 namespace metamer {
@@ -55,7 +56,7 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<RenderArguments, DevelopArguments, MatchArguments, MetamersArguments, CompareArguments,
+using Command = std::variant<RenderArguments, DevelopArguments, MatchArguments, MetamersArguments, CompareArguments, SkyArguments,
                              InfoArguments, ShowVersion, ShowText>;
 
 // Throws Failure (exit 2) with a line for each mistake.
