@@ -48,7 +48,7 @@ TEST(SpectralFilm, BandsOfAnIlluminantAreItsMeans) {
     for (int i = 0; i < 160; ++i)
       expected += interpolate(fl2, 380 + 10 * (double(band) + (i + 0.5) / 160)) / 160 * 1e-4;
     for (const float value : means[band]) mean += double{value} / 16;
-    EXPECT_NEAR(mean / expected, 1, 0.06) << band;
+    EXPECT_NEAR(mean / expected, 1, 0.04) << band;
   }
 }
 
