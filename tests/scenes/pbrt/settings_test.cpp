@@ -118,8 +118,8 @@ Film "rgb" "float cropwindow" [0 1 0 1] "string sensor" "canon_eos_5d" "string f
 TEST(PbrtSettings, ASpectralFilmRecordsAsManyBandsAsItHasBuckets) {
   const ReadScene read = read_settings(R"(Film "spectral" "integer nbuckets" 9 "float lambdamin" 400)");
   EXPECT_EQ(read.scene.settings.band_count, 9u);
-  EXPECT_THAT(read.messages, testing::ElementsAre("scene:1: note: Film \"spectral\": 9 bands from 380 to 740 nm are "
-                                                  "recorded, not 9 from 400 to 830 nm"));
+  EXPECT_THAT(read.messages, testing::Contains("scene:1: note: Film \"spectral\": 9 bands from 380 to 740 nm are "
+                                               "recorded, not 9 from 400 to 830 nm"));
   EXPECT_EQ(read_settings("Film \"spectral\"").scene.settings.band_count, 16u);
   EXPECT_EQ(read_settings("Film \"spectral\"\nFilm \"rgb\"").scene.settings.band_count, 0u);
 }
