@@ -31,7 +31,7 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
 // The environment's image (null: none) as columns of spectra and a density, and its rotation.
 void build_environment(const Image* image, const glm::dmat4& to_world, Environment& environment);
 
-// Point, directional and environment lights, then the choice among all lights by power.
+// Lights that are no shapes (see light_rows.h), then the choice among all lights by power.
 void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics);
 
 void build_camera(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics);

@@ -135,10 +135,10 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
 }
 
 std::string unknown_command(const std::string& word) {
-  return fmt::format("unknown command '{}'{}; there are render, develop, match, metamers and info", word,
+  return fmt::format("unknown command '{}'{}; there are render, develop, match, metamers, sky and info", word,
                      word.find('.') != std::string::npos
                          ? fmt::format(" (did you mean 'metamer render {}'?)", word)
-                         : suggestion(word, {"render", "develop", "match", "metamers", "info"}));
+                         : suggestion(word, {"render", "develop", "match", "metamers", "sky", "info"}));
 }
 
 // The argument without a flag, and what it names.
@@ -167,6 +167,8 @@ void note_extras(const CLI::App& app, const CLI::App* command, Mistakes& mistake
   if (has_unknown_flag || unexpected.empty()) return;
   if (command == nullptr)
     mistakes.push_back(unknown_command(unexpected));
+  else if (command->get_name() == "sky")
+    mistakes.push_back(fmt::format("unexpected argument '{}': sky takes flags only", unexpected));
   else
     mistakes.push_back(fmt::format("unexpected argument '{}': one {} at a time, and '{}' was named already", unexpected,
                                    input_of(*command).second,
@@ -267,6 +269,9 @@ Command parse_command_line(int argc, char** argv) {
   MetamersArguments metamers_arguments;
   ObserverTexts metamers_texts;
   add_metamers(app, metamers_arguments, metamers_texts);
+  SkyArguments sky_arguments;
+  SkyTexts sky_texts;
+  add_sky(app, sky_arguments, sky_texts);
   add_info(app, info_arguments);
   for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
   try {
@@ -293,15 +298,17 @@ Command parse_command_line(int argc, char** argv) {
     parse_match(*command, match_texts, match_arguments, mistakes);
   if (command != nullptr && command->get_name() == "metamers")
     parse_metamers(*command, metamers_texts, metamers_arguments, mistakes);
+  if (command != nullptr && command->get_name() == "sky") parse_sky(*command, sky_texts, sky_arguments, mistakes);
   fail_if_any(mistakes);
   if (wants_version) return ShowVersion{};
   if (command == nullptr)
     throw Failure(exit_wrong_input,
-                  "a command was expected: render, develop, match, metamers or info (metamer --help says more)");
+                  "a command was expected: render, develop, match, metamers, sky or info (metamer --help says more)");
   if (command->get_name() == "render") return render_arguments;
   if (command->get_name() == "develop") return develop_arguments;
   if (command->get_name() == "match") return match_arguments;
   if (command->get_name() == "metamers") return metamers_arguments;
+  if (command->get_name() == "sky") return sky_arguments;
   return info_arguments;
 }
 

@@ -7,6 +7,7 @@
 
 #include "engine/ecs/scene.h"
 #include "scenes/program/match_arguments.h"
+#include "scenes/program/sky_arguments.h"
 #include "systems/write_frame.h"
 
 namespace metamer {
@@ -53,8 +54,8 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<RenderArguments, DevelopArguments, MatchArguments, MetamersArguments, InfoArguments,
-                             ShowVersion, ShowText>;
+using Command = std::variant<RenderArguments, DevelopArguments, MatchArguments, MetamersArguments, SkyArguments,
+                             InfoArguments, ShowVersion, ShowText>;
 
 // Throws Failure (exit 2) with a line for each mistake.
 Command parse_command_line(int argc, char** argv);

@@ -14,6 +14,7 @@ int run_render(const RenderArguments& arguments, std::chrono::steady_clock::time
 int run_develop(const DevelopArguments& arguments);
 int run_match(const MatchArguments& arguments);
 int run_metamers(const MetamersArguments& arguments);
+int run_sky(const SkyArguments& arguments);
 int run_info(const InfoArguments& arguments);
 int run_version();
 

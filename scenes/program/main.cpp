@@ -37,6 +37,7 @@ int run(const Command& command, std::chrono::steady_clock::time_point start) {
   if (const auto* develop_it = std::get_if<DevelopArguments>(&command)) return run_develop(*develop_it);
   if (const auto* match = std::get_if<MatchArguments>(&command)) return run_match(*match);
   if (const auto* metamers = std::get_if<MetamersArguments>(&command)) return run_metamers(*metamers);
+  if (const auto* sky = std::get_if<SkyArguments>(&command)) return run_sky(*sky);
   if (const auto* info = std::get_if<InfoArguments>(&command)) return run_info(*info);
   return run_version();
 }
