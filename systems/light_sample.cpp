@@ -63,7 +63,7 @@ HWY_INLINE void sample_area(const LightFields& light, VU shape, const Vec3& from
 // Uniform in the cone under which a sphere is seen: Shirley, Wang, Zimmerman, "Monte Carlo Techniques for Direct
 // Lighting Calculations", ACM TOG 15(1), 1996. From inside it has no cone: sample_area serves.
 HWY_INLINE void sample_sphere_cone(const LightFields& light, const Vec3& from, VF u, VF v, LightSample& sample) {
-  const VF one = splat(1.0f), zero = hn::Zero(FloatTag());
+  const VF zero = hn::Zero(FloatTag());
   const SphereCone cone = sphere_cone(light, from);
   const Vec3 in_cone = sample_uniform_cone(u, v, cone.one_minus_cos);
   const Vec3 direction = to_world(make_frame(cone.axis), in_cone);
