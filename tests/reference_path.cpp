@@ -220,38 +220,6 @@ struct Tracer {
              table.rows_per_eta[row]}};
   }
 
-  // Without chance both: the mirror image, and the body by its own direction.
-  Spectrum4 coated(const ReferenceHit& hit, const LocalFrame& frame, const Direction& wo,
-                   const reference::CoatOptics& optics, const Spectrum4& lambda_nm, bool together, uint32_t events) {
-    const auto evaluate = [&](const Direction& wi) { return reference::eval_coated(wo, optics, wi); };
-    const Spectrum4 lit = direct(hit, frame, lambda_nm, evaluate);
-    const double choice = random(), u = random(), v = random();
-    if (is_path || optics.alpha > 0)
-      return plus(lit,
-                  go_on(hit, frame, reference::sample_coated(wo, optics, choice, u, v), lambda_nm, together, events));
-    BsdfSample body = reference::sample_diffuse(wo, {1, 1, 1, 1}, u, v), mirror;
-    body.weight = evaluate(body.wi).f_cos;
-    for (double& weight : body.weight) weight /= body.pdf;
-    mirror.wi = {-wo.x, -wo.y, wo.z};
-    mirror.pdf = 1;
-    mirror.delta = true;
-    for (size_t j = 0; j < 4; ++j)
-      mirror.weight[j] = reference::coat_surface_albedo(optics, optics.eta[j], std::abs(wo.z));
-    return plus(lit, plus(go_on(hit, frame, body, lambda_nm, together, events),
-                          go_on(hit, frame, mirror, lambda_nm, together, events)));
-  }
-
-  reference::CoatOptics coat(ShadeKind kind, uint32_t row, const Spectrum4& lambda_nm) const {
-    const CoatedColumns& table = kind == ShadeKind::smooth_coated ? world.smooth_coated : world.rough_coated;
-    return {reference_spectrum(world, table.reflectance[row], lambda_nm),
-            reference_spectrum(world, table.eta[row], lambda_nm),
-            double{table.alpha[row]},
-            table.schlick[row] != 0,
-            table.albedos.data(),
-            {table.first_row[row], table.row_stride[row], table.last_pair[row], table.eta_least[row],
-             table.rows_per_eta[row]}};
-  }
-
   // Each wavelength goes its own way from here on.
   Spectrum4 disperse(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media,
                      const Spectrum4& lambda_nm, uint32_t events) {

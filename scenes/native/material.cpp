@@ -105,14 +105,8 @@ Material mirror(SpectrumSet& spectra) {
 void read_coated(SceneContext& context, const JsonObject& object, Material& material) {
   if (object.has("reflectance"))
     material.reflectance = read_spectrum(context, *object.find("reflectance"), "reflectance", Quantity::reflectance);
-  read_dielectric(context, object, material);
-  material.alpha_x = material.alpha_y = static_cast<float>(object.number("roughness", unit_interval, 0));
-}
-
-void read_coated(SceneContext& context, const JsonObject& object, Material& material) {
-  if (object.has("reflectance"))
-    material.reflectance = read_spectrum(context, *object.find("reflectance"), "reflectance", Quantity::reflectance);
-  read_dielectric(context, object, material);
+  constexpr std::string_view ways[] = {"glass", "eta"};
+  read_index(context, object, "eta", ways, material);
   material.alpha_x = material.alpha_y = static_cast<float>(object.number("roughness", unit_interval, 0));
 }
 

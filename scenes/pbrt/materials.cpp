@@ -107,26 +107,6 @@ void read_coated_diffuse(Reader& reader, Parameters& parameters, Material& mater
   material.alpha_x = material.alpha_y = std::sqrt(material.alpha_x * material.alpha_y);
 }
 
-// Our coat has no thickness; pbrt's absorbs along its way through the layer.
-void read_coated_diffuse(Reader& reader, Parameters& parameters, Material& material) {
-  read_diffuse(reader, parameters, material);
-  material.kind = MaterialKind::coated;
-  read_index(reader, parameters, material);
-  read_roughness(reader, parameters, material);
-  reader.messages.warning_once(
-      "coateddiffuse", parameters.source(),
-      "material \"coateddiffuse\": its layer has no thickness here and absorbs nothing, and all "
-      "internal reflections count; it looks lighter than pbrt's");
-  for (const std::string_view name : {"thickness", "g", "albedo"})
-    parameters.unsupported(name, "the layer has no thickness and scatters nothing");
-  for (const std::string_view name : {"maxdepth", "nsamples"}) parameters.unsupported(name, "the sum is exact");
-  if (material.alpha_x != material.alpha_y)
-    reader.messages.warning_once("anisotropic coat", parameters.source(),
-                                 "material \"coateddiffuse\": its roughness is the same in every direction here, the "
-                                 "geometric mean of the two");
-  material.alpha_x = material.alpha_y = std::sqrt(material.alpha_x * material.alpha_y);
-}
-
 void read_unsupported(Reader& reader, std::string_view kind, Parameters& parameters, Material& material) {
   const bool known = std::find(std::begin(material_kinds), std::end(material_kinds), kind) != std::end(material_kinds);
   material.reflectance = reader.scene.spectra.add_constant(0.5).id;

@@ -177,6 +177,31 @@ TEST(Media, WhereSolidsOverlapTheHigherPriorityFillsTheSpace) {
   }
 }
 
+// The same without chance: every branch of the stack, on every path.
+TEST(Media, RecursiveFollowsEveryBranchThroughAStack) {
+  const double wanted = stack_transmittance({1.6, 1.33, 1.0});
+  SceneBuilder b = beam(1, 16);
+  b.scene.settings.integrator = Integrator::recursive;
+  add_plate(b, b.smooth(b.constant(1.6), zero_spectrum, 7), 0, 0.5);
+  add_plate(b, b.smooth(b.constant(1.33), zero_spectrum, 3), -0.2, 1);
+  add_screen(b, -2);
+  expect_every_path(
+      trace_radiances(*b.freeze()), [&](double) { return wanted; }, 1e-4);
+  SceneBuilder c = beam(1, 4);
+  c.scene.settings.integrator = Integrator::recursive;
+  c.add(rectangle(1, 1), c.thin(c.constant(1.5), c.constant(1e-6), 0.02f));
+  add_screen(c, -1);
+  expect_every_path(
+      trace_radiances(*c.freeze()),
+      [](double nm) {
+        reference::ThinOptics optics;
+        optics.eta.fill(1.5);
+        optics.optical_depth[0] = -std::log(transmittance(1e-6, nm, 0.02));
+        return reference::thin_shares(optics, 0, 1).transmitted;
+      },
+      1e-4);
+}
+
 // A bubble of air of high priority in glass, and in the bubble a lesser glass ball: it is not there.
 TEST(Media, WhatALowerPriorityAddsInsideIsPassedThrough) {
   SceneBuilder b = beam(16, 8);
