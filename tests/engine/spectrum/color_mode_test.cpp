@@ -63,7 +63,8 @@ TEST(ColorMode, WhiteIsOneInEveryChannel) {
   }
 }
 
-// Sums over 1 nm by a script in numpy, from the tables of engine/spectrum/data. Cyan is outside of sRGB.
+// Sums over 1 nm by a script in numpy, from the tables of engine/spectrum/data, beyond 780 nm as sources.h says. Cyan
+// is outside of sRGB.
 TEST(ColorMode, PatchesHaveTheCoefficientsComputedElsewhere) {
   struct Patch {
     const char* name;
@@ -82,9 +83,9 @@ TEST(ColorMode, PatchesHaveTheCoefficientsComputedElsewhere) {
     expect_near(albedo_coefficients(ColorMode::lamps, spectrum), patch.lamps, 2e-6);
   }
   const Color3 lamp = light_coefficients(ColorMode::rgb, *named_spectrum("A"));
-  expect_near({lamp[0] / 13596874.05, lamp[1] / 6087638.04, lamp[2] / 1719822.74}, {1, 1, 1}, 1e-6);
+  expect_near({lamp[0] / 13596882.87, lamp[1] / 6087637.03, lamp[2] / 1719822.64}, {1, 1, 1}, 1e-6);
   const Color3 by_lamps = light_coefficients(ColorMode::lamps, *named_spectrum("A"));
-  expect_near({by_lamps[0] / 10927809.75, by_lamps[1] / 6320103.67, by_lamps[2] / 2227566.91}, {1, 1, 1}, 1e-6);
+  expect_near({by_lamps[0] / 10927814.45, by_lamps[1] / 6320103.37, by_lamps[2] / 2227566.83}, {1, 1, 1}, 1e-6);
 }
 
 // The lamps: a monochromatic light at one of them is that lamp alone; a matrix of known entries.
@@ -122,7 +123,7 @@ TEST(ColorMode, ReflectancesGivenAsRgbComeBack) {
        {Color3{0.63, 0.065, 0.05}, {0.14, 0.45, 0.091}, {0.725, 0.71, 0.68}, {0, 0, 1}, {1, 1, 0}}) {
     SpectrumSet set;
     const Samples spectrum = set.samples(set.add_rgb(rgb, RgbKind::albedo).id);
-    expect_near(albedo_coefficients(ColorMode::rgb, spectrum), rgb, 1e-5);
+    expect_near(albedo_coefficients(ColorMode::rgb, spectrum), rgb, 5e-5);
   }
 }
 
