@@ -177,6 +177,21 @@ TEST(Media, WhereSolidsOverlapTheHigherPriorityFillsTheSpace) {
   }
 }
 
+// Where they overlap it is the higher priority that absorbs, whichever was entered first; without interfaces.
+TEST(Media, TheHigherPriorityAbsorbsWhereSolidsOverlap) {
+  for (const bool overlap_in_front : {false, true}) {
+    SceneBuilder b = beam(64, 8);
+    add_plate(b, b.smooth(b.constant(1), b.constant(1e-7), 7), overlap_in_front ? -0.5 : 0.0, 0.5);
+    add_plate(b, b.smooth(b.constant(1), b.constant(3e-8), 3), overlap_in_front ? 0.0 : -0.2,
+              overlap_in_front ? 0.7 : 1.0);
+    add_screen(b, -2);
+    const double lesser = overlap_in_front ? 0.5 : 0.7;
+    expect_mean(
+        trace_radiances(*b.freeze()),
+        [&](double nm) { return transmittance(1e-7, nm, 0.5) * transmittance(3e-8, nm, lesser); }, 0.03);
+  }
+}
+
 // The same without chance: every branch of the stack, on every path.
 TEST(Media, RecursiveFollowsEveryBranchThroughAStack) {
   const double wanted = stack_transmittance({1.6, 1.33, 1.0});
