@@ -33,8 +33,8 @@ enum class ShadeKind : uint32_t {
 inline constexpr uint32_t shade_kind_count = 11;
 // Rough kinds are lit by light samples, smooth kinds only by what lies in the few directions they answer to. A smooth
 // coat does both: its body is rough, its surface mirrors.
-inline constexpr ShadeKind rough_kinds[] = {ShadeKind::diffuse,       ShadeKind::rough,
-                                            ShadeKind::smooth_coated, ShadeKind::rough_coated,
+inline constexpr ShadeKind rough_kinds[] = {ShadeKind::diffuse,         ShadeKind::rough,
+                                            ShadeKind::smooth_coated,   ShadeKind::rough_coated,
                                             ShadeKind::rough_conductor, ShadeKind::rough_dielectric};
 inline constexpr ShadeKind smooth_kinds[] = {ShadeKind::smooth_conductor, ShadeKind::dielectric,
                                              ShadeKind::thin_dielectric};

@@ -59,8 +59,8 @@ void sort_hits(const World& world, uint32_t size, const HitStream& hits, uint32_
 void surface(const World& world, const PathStream& paths, const HitStream& hits, const uint32_t* order,
              ShadeStream& shade);
 
-// Where the world has interiors: what a path turns out to have been inside of all the time, and what that absorbed on the
-// way from the vertex before.
+// Where the world has interiors: what a path turns out to have been inside of all the time, and what that absorbed on
+// the way from the vertex before.
 void media(const World& world, ShadeStream& shade);
 
 // Light that the rays ran into, weighted against having been sampled (power heuristic).

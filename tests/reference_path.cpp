@@ -189,14 +189,14 @@ struct Tracer {
   }
 
   // Without chance both: the mirror image, and the body by its own direction.
-  Spectrum4 coated(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
-                   const Direction& wo, const reference::CoatOptics& optics, const Spectrum4& lambda_nm, bool together, uint32_t events) {
+  Spectrum4 coated(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media, const Direction& wo,
+                   const reference::CoatOptics& optics, const Spectrum4& lambda_nm, bool together, uint32_t events) {
     const auto evaluate = [&](const Direction& wi) { return reference::eval_coated(wo, optics, wi).f_cos; };
     const Spectrum4 lit = direct(hit, frame, media, lambda_nm, evaluate);
     const double choice = random(), u = random(), v = random();
     if (is_path || optics.alpha > 0)
-      return plus(lit,
-                  go_on(hit, frame, media, reference::sample_coated(wo, optics, choice, u, v), lambda_nm, together, events));
+      return plus(lit, go_on(hit, frame, media, reference::sample_coated(wo, optics, choice, u, v), lambda_nm, together,
+                             events));
     BsdfSample body = reference::sample_diffuse(wo, {1, 1, 1, 1}, u, v), mirror;
     body.weight = evaluate(body.wi);
     for (double& weight : body.weight) weight /= body.pdf;

@@ -55,7 +55,7 @@ struct RenderSettings {
   uint32_t max_depth = 16;  // scattering events on a path: 0 shows emission only
   uint32_t seed = 0;
   Integrator integrator = Integrator::path;
-  bool shadows = true;  // false: light sources shine through everything on what they light
+  bool shadows = true;      // false: light sources shine through everything on what they light
   uint32_t band_count = 0;  // of the spectral film; 0: none
   Filter filter;
   float sensor_scale = 1;    // exposure time times ISO / 100: multiplies what the film records

@@ -57,8 +57,8 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<RenderArguments, DevelopArguments, MatchArguments, MetamersArguments, CompareArguments, SkyArguments,
-                             InfoArguments, ShowVersion, ShowText>;
+using Command = std::variant<RenderArguments, DevelopArguments, MatchArguments, MetamersArguments, CompareArguments,
+                             SkyArguments, InfoArguments, ShowVersion, ShowText>;
 
 // Throws Failure (exit 2) with a line for each mistake.
 Command parse_command_line(int argc, char** argv);

@@ -16,8 +16,8 @@ double fresnel(const CoatOptics& optics, double eta, double cos_theta) {
 
 // A column of the table between two rows.
 double between_rows(const CoatOptics& optics, double eta, size_t column) {
-  const double x =
-      std::clamp((eta - optics.rows.eta_least) * optics.rows.rows_per_eta, 0.0, static_cast<double>(optics.rows.last_pair) + 1);
+  const double x = std::clamp((eta - optics.rows.eta_least) * optics.rows.rows_per_eta, 0.0,
+                              static_cast<double>(optics.rows.last_pair) + 1);
   const size_t pair = std::min<size_t>(static_cast<size_t>(x), optics.rows.last_pair);
   const float* low = optics.table + optics.rows.first + pair * optics.rows.stride + column;
   return std::lerp(double{low[0]}, double{low[optics.rows.stride]}, x - static_cast<double>(pair));

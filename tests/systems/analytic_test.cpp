@@ -66,8 +66,8 @@ TEST(Analytic, ALampLooksTheSameFromAnyDistanceAndTilted) {
     }
 }
 
-// Smaller than a pixel it covers a part of it, in proportion to the solid angle under which it is seen. The scene has no
-// triangles: vectors of dead lanes must find something to fetch all the same.
+// Smaller than a pixel it covers a part of it, in proportion to the solid angle under which it is seen. The scene has
+// no triangles: vectors of dead lanes must find something to fetch all the same.
 TEST(Analytic, ALampBelowAPixelFallsWithTheSquareOfItsDistance) {
   for (const double distance : {1.0, 2.0, 4.0}) {
     SceneBuilder b(4, 4, 1 << 14, 0);

@@ -72,8 +72,8 @@ TEST(Sun, ItsRadianceIsThatAboveTheAtmosphereLessWhatTheAirTakes) {
   EXPECT_LT(noon[720 - lambda_min_nm], 0.92 * noon[710 - lambda_min_nm]);
 }
 
-// On the ground one measures 10 to 120 klx on a clear day, more the higher the sun, a tenth to a third from the sky; the
-// model's sky is known to be on the bright side, the more so in haze.
+// On the ground one measures 10 to 120 klx on a clear day, more the higher the sun, a tenth to a third from the sky;
+// the model's sky is known to be on the bright side, the more so in haze.
 TEST(Sky, LightsTheGroundAsOutdoors) {
   for (const double turbidity : {2.0, 4.0, 6.0}) {
     double last = 0;
