@@ -106,7 +106,9 @@ void read_coated(SceneContext& context, const JsonObject& object, Material& mate
   if (object.has("reflectance"))
     material.reflectance = read_spectrum(context, *object.find("reflectance"), "reflectance", Quantity::reflectance);
   constexpr std::string_view ways[] = {"glass", "eta"};
-  read_index(context, object, "eta", ways, material);
+  const std::string_view way = object.one_of(ways);
+  if (way == "glass") material.eta = read_glass(context, *object.find("glass"));
+  if (way == "eta") material.eta = read_spectrum(context, *object.find("eta"), "eta", Quantity::eta);
   material.alpha_x = material.alpha_y = static_cast<float>(object.number("roughness", unit_interval, 0));
 }
 
