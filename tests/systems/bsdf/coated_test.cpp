@@ -1,5 +1,5 @@
-// The coated material: values by paper and pencil, what it owes to energy, its limits; kernels against
-// twins and samplers against densities, on every instruction set.
+// The coated material: values by paper and pencil, what it owes to energy, its limits; kernels against twins and
+// samplers against densities, on every instruction set. Reciprocity: reciprocity_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
