@@ -1,6 +1,7 @@
 // Directions that light_sample draws, against the density that emission believes in: the two sides of multiple
 // importance sampling. Emission's side is read off its weight: a ray that claims to be drawn with density 1 and meets a
 // light of radiance L adds L / (1 + p^2).
+#include <algorithm>
 #include <random>
 #include <span>
 #include <utility>
@@ -282,6 +283,35 @@ TEST(LightSample, ImagesOfBothMappings) {
     b.environment(image, 1, turned(70, 0.3, 0.5, 1));
     expect_sides_agree(b, {0, 0, 0}, 1);
   }
+}
+
+// Which light it is, told by its distance: point, spot and directional lights have no more than that to draw.
+TEST(LightSample, EachLightIsChosenWithItsProbability) {
+  SceneBuilder b = empty();
+  const std::vector<LightShape> shapes = {LightShape::point, LightShape::spot, LightShape::sphere,
+                                          LightShape::directional, LightShape::environment};
+  b.light(LightKind::point, unit_spectrum, 3, moved(1, 0, 0));
+  b.light(LightKind::spot, unit_spectrum, 20, moved(0, 0, 2));  // shines along -z
+  b.emit(b.add(sphere(0.5f), b.diffuse(0.0), moved(0, 5, 0)), unit_spectrum, 4);
+  b.light(LightKind::directional, unit_spectrum, 0.5f);
+  b.light(LightKind::environment, unit_spectrum, 0.1f);
+  b.look_at({0, 0, 50}, {0, 0, 0}, perspective(40));
+  const std::unique_ptr<World> world = b.freeze();
+  constexpr uint32_t count = 50 * batch_capacity;
+  std::vector<double> observed(shapes.size(), 0.0), expected(shapes.size(), 0.0);
+  for (const LightRow& light : world->lights) {
+    const auto shape = std::find(shapes.begin(), shapes.end(), static_cast<LightShape>(light.shape));
+    ASSERT_NE(shape, shapes.end());
+    expected[size_t(shape - shapes.begin())] += double{light.choice_probability} * count;
+  }
+  for (const Draw& draw : draw_lights(*world, {0, 0, 0}, count)) {
+    EXPECT_GT(draw.radiance, 0);
+    const size_t finite = draw.distance < 1.5 ? 0 : draw.distance < 3 ? 1 : 2, endless = draw.density == 0 ? 3 : 4;
+    observed[std::isinf(draw.distance) ? endless : finite] += 1;
+  }
+  const ChiSquare result = chi_square_test(observed, expected);
+  EXPECT_GT(result.p_value, chi_square_level);
+  EXPECT_EQ(result.degrees_of_freedom, double(shapes.size() - 1));
 }
 
 // Its directions stay unit vectors, whose density is per solid angle; a mirror stays one.

@@ -1,5 +1,5 @@
-// The coated material: values by paper and pencil, what it owes to energy and reciprocity, its limits; kernels against
-// twins and samplers against densities, on every instruction set.
+// The coated material: values by paper and pencil, what it owes to energy, its limits; kernels against twins and
+// samplers against densities, on every instruction set. Reciprocity: reciprocity_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -196,25 +196,6 @@ TEST(Coated, EachWavelengthHasItsOwnEta) {
     if (j > 0) {
       EXPECT_LT(together.value[j], together.value[j - 1]);
     }
-  }
-}
-
-TEST(Coated, LightMayTravelEitherWay) {
-  for (const Coat& coat : some_coats()) {
-    const std::vector<BsdfCase> cases = random_coats(50000, coat);
-    std::vector<BsdfCase> swapped = cases;
-    for (BsdfCase& c : swapped) std::swap_ranges(c.wo, c.wo + 3, c.wi);
-    for_each_target([&] {
-      const std::vector<BsdfResult> there = run_eval_coated(coat, cases), back = run_eval_coated(coat, swapped);
-      size_t reflecting = 0;
-      for (size_t i = 0; i < cases.size(); ++i)
-        for (size_t j = 0; j < 4; ++j) {
-          const float f = there[i].value[j] / std::abs(cases[i].wi[2]);
-          EXPECT_NEAR(back[i].value[j] / std::abs(cases[i].wo[2]), f, 4e-6f * f + 1e-30f);
-          if (f > 0) ++reflecting;
-        }
-      EXPECT_GT(reflecting, cases.size() / 4);
-    });
   }
 }
 
