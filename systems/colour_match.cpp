@@ -32,6 +32,13 @@ namespace metamer {
 
 HWY_EXPORT(multiply_matrix);
 
+ColourMatrix rounded(const Matrix3& matrix) {
+  ColourMatrix result;
+  for (size_t row = 0; row < 3; ++row)
+    for (size_t column = 0; column < 3; ++column) result[row][column] = static_cast<float>(matrix[row][column]);
+  return result;
+}
+
 void colour_match(const ColourMatrix& xyz_to_rgb, const Column<float>& X, const Column<float>& Y,
                   const Column<float>& Z, Column<float>& r, Column<float>& g, Column<float>& b) {
   for (Column<float>* column : {&r, &g, &b}) column->resize(X.size());

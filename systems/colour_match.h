@@ -4,10 +4,13 @@
 
 #include "engine/film/picture.h"
 #include "engine/simd/column.h"
+#include "engine/spectrum/color.h"
 
 namespace metamer {
 
 using ColourMatrix = std::array<std::array<float, 3>, 3>;  // [row][column]
+
+ColourMatrix rounded(const Matrix3& matrix);
 
 // rgb = m xyz for every row, with m[i][0] X + m[i][1] Y + m[i][2] Z summed from the left and each step rounded
 // to float: equal bits on every instruction set. Relative error at most 3 2^-24 of the sum of the terms'

@@ -96,6 +96,21 @@ HWY_INLINE VF luminance_of(const Vec3& rgb, const ToneConstants& c) {
   return positive(hn::Add(rg, hn::Mul(splat(c.luminance[2]), rgb.z)));
 }
 
+// What is negative goes towards the grey of the same luminance until nothing is, see into_gamut; all of it is black
+// where luminance is not above 0. Relative to the largest component within 1e-6 of into_gamut.
+HWY_INLINE Vec3 desaturated(const Vec3& rgb, const ToneConstants& c) {
+  const VF least = hn::Min(hn::Min(rgb.x, rgb.y), hn::Min(rgb.z, hn::Zero(FloatTag())));
+  const VF luminance = luminance_of(rgb, c);
+  const VF below = hn::Sub(luminance, least);  // 0 only where all is black
+  const VF keep = hn::Div(luminance, hn::Max(below, splat(1e-37f)));
+  const auto outside = hn::Lt(least, hn::Zero(FloatTag()));
+  const auto moved = [&](VF v) {
+    const VF mixed = hn::Add(luminance, hn::Mul(keep, hn::Sub(v, luminance)));
+    return hn::IfThenElse(outside, positive(mixed), v);
+  };
+  return {moved(rgb.x), moved(rgb.y), moved(rgb.z)};
+}
+
 // The curve of exposed colour. Components up to 2^60 in magnitude. Against tone_curve_scalar, with M the largest
 // magnitude of the three components there and at least 1: linear exact; reinhard 3e-7 M, reinhard-extended and hable
 // 5e-7 M, filmic 3e-6 M, agx 2e-5 M.

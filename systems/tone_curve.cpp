@@ -10,8 +10,6 @@ namespace {
 constexpr std::array<std::string_view, tone_curve_count> names = {"linear", "reinhard", "reinhard-extended",
                                                                   "hable",  "filmic",   "agx"};
 
-constexpr double reinhard_white = 4.0;
-
 struct HableCurve {
   double A = 0.15, B = 0.5, C = 0.1, D = 0.2, E = 0.02, F = 0.3, white = 11.2, bias = 2.0;
 };
@@ -78,7 +76,7 @@ void store(const Matrix3& m, float (&row_major)[9]) {
 std::span<const std::string_view> tone_curve_names() { return names; }
 std::string_view tone_curve_name(ToneCurve curve) { return names[static_cast<size_t>(curve)]; }
 
-Color3 tone_curve_scalar(ToneCurve curve, ColorSpace display, const Color3& rgb) {
+Color3 tone_curve_scalar(ToneCurve curve, ColorSpace display, const Color3& rgb, double reinhard_white) {
   Color3 mapped = rgb;
   const double luminance = std::max(multiply(rgb_to_xyz(display), rgb)[1], 0.0);
   const double white_squared = reinhard_white * reinhard_white;
@@ -101,10 +99,10 @@ Color3 tone_curve_scalar(ToneCurve curve, ColorSpace display, const Color3& rgb)
   return mapped;
 }
 
-ToneConstants tone_constants(ColorSpace display) {
+ToneConstants tone_constants(ColorSpace display, float reinhard_white) {
   ToneConstants c;
   for (size_t i = 0; i < 3; ++i) c.luminance[i] = static_cast<float>(rgb_to_xyz(display)[1][i]);
-  c.reinhard_inverse_white_squared = static_cast<float>(1 / (reinhard_white * reinhard_white));
+  c.reinhard_inverse_white_squared = static_cast<float>(1 / (double{reinhard_white} * double{reinhard_white}));
   // f(y) = (A y^2 + C B y + D E) / (A y^2 + B y + D F) - E / F: the constant parts cancel on one denominator.
   const HableCurve h;
   const double scale = 1 / hable_fraction(h.white), toe = h.E / h.F;

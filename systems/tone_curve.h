@@ -17,7 +17,7 @@ enum class ToneCurve : uint8_t {
   // x / (1 + L), L the luminance: E. Reinhard et al., "Photographic Tone Reproduction for Digital Images", SIGGRAPH
   // 2002, equation 3. Colours keep their chromaticity.
   reinhard,
-  // x (1 + L / 16) / (1 + L): the same, equation 4, with L_white = 4: two stops above white become white.
+  // x (1 + L / L_white^2) / (1 + L): the same, equation 4. L_white becomes white; 4, two stops above it, if not given.
   reinhard_extended,
   // f(2 x) / f(11.2), f(x) = (x (A x + C B) + D E) / (x (A x + B) + D F) - E / F with A = 0.15, B = 0.5, C = 0.1,
   // D = 0.2, E = 0.02, F = 0.3: J. Hable, "Filmic Tonemapping Operators", filmicworlds.com, 2010 (Uncharted 2).
@@ -36,12 +36,15 @@ inline constexpr size_t tone_curve_count = 6;
 std::span<const std::string_view> tone_curve_names();
 std::string_view tone_curve_name(ToneCurve curve);
 
+inline constexpr float default_reinhard_white = 4.0f;
+
 // The exposed colour is clipped to this magnitude, so that no curve overflows.
 inline constexpr float brightest_exposed = 0x1p60f;
 
 // The scalar definition. rgb: finite, linear in the display's primaries. AgX, which is defined on sRGB, goes there and
 // back through the display's matrices.
-Color3 tone_curve_scalar(ToneCurve curve, ColorSpace display, const Color3& rgb);
+Color3 tone_curve_scalar(ToneCurve curve, ColorSpace display, const Color3& rgb,
+                         double reinhard_white = double{default_reinhard_white});
 
 // What the SIMD form needs, for one display. Matrices row-major. The fraction of Hable's curve is
 // y (square a y + linear) / (y (a y + b) + df) with y = bias x.
@@ -53,6 +56,6 @@ struct ToneConstants {
   float agx_polynomial[7];
   float to_srgb[9], agx_inset[9], agx_outset[9], from_srgb[9];
 };
-ToneConstants tone_constants(ColorSpace display);
+ToneConstants tone_constants(ColorSpace display, float reinhard_white);
 
 }  // namespace metamer

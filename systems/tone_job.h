@@ -5,8 +5,11 @@
 namespace metamer {
 
 struct ToneJob {
-  float scale;  // 2^stops
+  float scale[3];  // 2^stops, in units of the display's white
+  float unit[3];   // back from them
   bool dither;
+  bool encoded;
+  bool desaturate;  // what is outside the gamut, for codes
   ToneCurve curve;
   ToneConstants constants;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/schedule/blocks.h"
+#include "systems/display_colour.h"
 #include "systems/tone_job.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -36,8 +37,9 @@ HWY_INLINE VF dither_threshold(const Position& p) {
   return hn::Mul(hn::ConvertTo(FloatTag(), hn::BitCast(IntTag(), hn::ShiftRight<8>(phase))), splat(0x1p-24f));
 }
 
-HWY_INLINE VU quantise(VF linear, VF threshold) {
-  const VF code = hn::Add(hn::Mul(srgb_encode(linear), splat(255.0f)), threshold);
+// `encoded` from 0 to 1.
+HWY_INLINE VU quantise(VF encoded, VF threshold) {
+  const VF code = hn::Add(hn::Mul(encoded, splat(255.0f)), threshold);
   const VI whole = hn::ConvertTo(IntTag(), code);  // towards zero
   return hn::BitCast(UintTag(), hn::Min(whole, hn::Set(IntTag(), 255)));
 }
@@ -48,14 +50,17 @@ void encode_column(size_t count, const float* HWY_RESTRICT linear, float* HWY_RE
     hn::Store(srgb_encode(hn::Load(tag, linear + i)), tag, encoded + i);
 }
 
-template <ToneCurve curve>
 HWY_INLINE Vec3 exposed(const Picture& picture, size_t i, const ToneJob& job) {
   const FloatTag tag;
-  const VF scale = splat(job.scale);
-  const Vec3 rgb = {tamed(hn::Mul(hn::Load(tag, picture.r.data() + i), scale)),
-                    tamed(hn::Mul(hn::Load(tag, picture.g.data() + i), scale)),
-                    tamed(hn::Mul(hn::Load(tag, picture.b.data() + i), scale))};
-  return tone_curve<curve>(rgb, job.constants);
+  return {tamed(hn::Mul(hn::Load(tag, picture.r.data() + i), splat(job.scale[0]))),
+          tamed(hn::Mul(hn::Load(tag, picture.g.data() + i), splat(job.scale[1]))),
+          tamed(hn::Mul(hn::Load(tag, picture.b.data() + i), splat(job.scale[2])))};
+}
+
+// A component of linear light, or of codes, to [0, 1].
+HWY_INLINE VF encode(VF component, bool is_encoded) {
+  if (!is_encoded) return srgb_encode(component);
+  return hn::Min(positive(component), splat(1.0f));
 }
 
 template <ToneCurve curve>
@@ -65,8 +70,10 @@ void encode_with(const Picture& picture, const ToneJob& job, size_t begin, size_
   Position at = wrapped({hn::Iota(UintTag(), x), splat_u(y)}, width);
   for (size_t i = begin; i < end; i += hn::Lanes(FloatTag())) {
     const VF threshold = job.dither ? dither_threshold(at) : splat(0.5f);
-    const Vec3 rgb = exposed<curve>(picture, i, job);
-    const VU r = quantise(rgb.x, threshold), g = quantise(rgb.y, threshold), b = quantise(rgb.z, threshold);
+    const Vec3 light = exposed(picture, i, job);
+    const Vec3 rgb = tone_curve<curve>(job.desaturate ? desaturated(light, job.constants) : light, job.constants);
+    const VU r = quantise(encode(rgb.x, job.encoded), threshold), g = quantise(encode(rgb.y, job.encoded), threshold),
+             b = quantise(encode(rgb.z, job.encoded), threshold);
     hn::Store(hn::Or(r, hn::Or(hn::ShiftLeft<8>(g), hn::ShiftLeft<16>(b))), UintTag(), codes + i);
     at = wrapped({hn::Add(at.x, step), at.y}, width);
   }
@@ -76,10 +83,10 @@ template <ToneCurve curve>
 void expose_with(Picture& picture, const ToneJob& job, size_t begin, size_t end) {
   const FloatTag tag;
   for (size_t i = begin; i < end; i += hn::Lanes(tag)) {
-    const Vec3 rgb = exposed<curve>(picture, i, job);
-    hn::Store(rgb.x, tag, picture.r.data() + i);
-    hn::Store(rgb.y, tag, picture.g.data() + i);
-    hn::Store(rgb.z, tag, picture.b.data() + i);
+    const Vec3 rgb = tone_curve<curve>(exposed(picture, i, job), job.constants);
+    hn::Store(hn::Mul(rgb.x, splat(job.unit[0])), tag, picture.r.data() + i);
+    hn::Store(hn::Mul(rgb.y, splat(job.unit[1])), tag, picture.g.data() + i);
+    hn::Store(hn::Mul(rgb.z, splat(job.unit[2])), tag, picture.b.data() + i);
   }
 }
 
@@ -131,7 +138,19 @@ double power_of_two(double stops) {
 
 ToneJob tone_job(const ToneSettings& settings) {
   const float stops = std::isnan(settings.exposure_stops) ? 0 : std::clamp(settings.exposure_stops, -100.0f, 100.0f);
-  return {static_cast<float>(power_of_two(stops)), settings.dither, settings.curve, tone_constants(settings.display)};
+  const double scale = power_of_two(stops);
+  const Color3 white = white_amounts(settings.display);
+  ToneJob job;
+  for (size_t i = 0; i < 3; ++i) {
+    job.scale[i] = static_cast<float>(scale / white[i]);
+    job.unit[i] = static_cast<float>(white[i]);
+  }
+  job.dither = settings.dither;
+  job.encoded = settings.encoded;
+  job.desaturate = settings.display == ColorSpace::lamps && !settings.encoded;
+  job.curve = settings.curve;
+  job.constants = tone_constants(settings.display, settings.reinhard_white);
+  return job;
 }
 
 constexpr size_t pixels_per_block = size_t{1} << 16;
@@ -148,8 +167,8 @@ CodedPicture tone_map(const Picture& picture, const ToneSettings& settings) {
 }
 
 void expose(Picture& picture, const ToneSettings& settings) {
+  if (settings.exposure_stops == 0 && settings.curve == ToneCurve::linear) return;
   const ToneJob job = tone_job(settings);
-  if (job.scale == 1 && job.curve == ToneCurve::linear) return;
   for_blocks(picture.pixel_count(), settings.threads, pixels_per_block, [&](size_t begin, size_t end) {
     HWY_DYNAMIC_DISPATCH(expose_pixels)(picture, job, begin, end);
   });

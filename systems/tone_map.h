@@ -12,12 +12,15 @@ struct ToneSettings {
   float exposure_stops = 0;  // colour times 2^stops; [-100, 100], beyond is clamped, not-a-number is 0
   bool dither = true;        // of the codes
   ToneCurve curve = ToneCurve::linear;
-  ColorSpace display = ColorSpace::srgb;  // whose linear colour the picture holds
-  uint32_t threads = 0;                   // 0: all; changes nothing in the result
+  float reinhard_white = default_reinhard_white;  // L_white of reinhard_extended; above 0
+  ColorSpace display = ColorSpace::srgb;          // whose linear colour the picture holds, see display_to_xyz
+  bool encoded = false;                           // the picture holds codes over 255 already: no curve, no encoding
+  uint32_t threads = 0;                           // 0: all; changes nothing in the result
 };
 
-// Exposure, tone curve and the display's encoding, which is the sRGB curve on every display. Clips what is outside the
-// display's gamut to [0, 1]; not-a-number becomes 0. With dither a value between two codes takes the upper one at that
+// Exposure, tone curve and the display's encoding, which is the sRGB curve on every display. What is outside the
+// display's gamut is clipped to [0, 1]; of lamps, negative amounts are first taken away as into_gamut does, before the
+// tone curve. Not-a-number becomes 0. With dither a value between two codes takes the upper one at that
 // fraction of the pixels, where depends on the pixel's position alone and is one for R, G and B, so that grey stays
 // grey; codes met exactly, 0 and 255 among them, stay. Without dither the nearest code. Equal codes on every
 // instruction set.

@@ -9,6 +9,7 @@
 #include "engine/spectrum/color.h"
 #include "engine/spectrum/observers.h"
 #include "systems/colour_match.h"
+#include "systems/ocio_view.h"
 #include "systems/tone_map.h"
 
 namespace metamer {
@@ -21,7 +22,10 @@ struct Look {
   Adaptation adaptation = Adaptation::cat16;
   std::optional<float> exposure_stops = 0.0f;  // nothing: automatic_exposure_stops
   ToneCurve curve = ToneCurve::linear;
-  uint32_t threads = 0;  // 0: all; changes no pixel
+  float reinhard_white = default_reinhard_white;  // of ToneCurve::reinhard_extended
+  bool aces = false;                              // instead of `curve`
+  std::optional<OcioView> view;                   // resolved; instead of `curve` and the display's encoding
+  uint32_t threads = 0;                           // 0: all; changes no pixel
 };
 
 struct WriteSettings {
@@ -40,19 +44,30 @@ XyzPicture observe(const Film& film, Observer observer, uint32_t threads);
 // matrix is a display's.
 Picture develop(const XyzPicture& xyz, const ColourMatrix& xyz_to_rgb);
 
-// XYZ, observed already, as the look has it: developed for its display and white; `tone` is what is left to do to it.
+// The same in linear sRGB: what part 0 of an EXR holds, and what the looks of the 1931 observer start from.
+Picture develop(const XyzPicture& xyz);
+
+// A picture as the look has it: in the colour of its display and adapted to its white. The rest is what is left to do.
 struct Developed {
-  Picture picture;
+  Picture picture;  // see display_to_xyz
   ToneSettings tone;
+  bool aces = false;
+  std::optional<OcioView> view;
 };
+// `picture` is linear sRGB.
+Developed develop(const Picture& picture, const Look& look);
+// XYZ that the look's observer saw. On lamps the three numbers of Stiles & Burch are those that the observer gave, but
+// for rounding, unless they are adapted to a white.
 Developed develop(const XyzPicture& xyz, const Look& look);
-// Observed by the look's observer.
-Developed develop(const Film& film, const Look& look);
+// A film, and its picture in linear sRGB, as the look's observer sees it.
+Developed develop(const Film& film, const Picture& picture, const Look& look);
 
-// Writes codes of the look's display, with a profile that names it. The whole file or nothing.
-FileError write_developed_png(const std::string& path, const Developed& developed, const std::string& software);
+// Writes codes of the look's display, with a profile that names it; of an OpenColorIO view without any, as only the
+// configuration knows what they mean. The whole file or nothing.
+FileError write_developed_png(const std::string& path, Developed developed, const std::string& software);
 
-// Writes linear colour after exposure and tone curve, without the film. header.chromaticities are set to the display's.
+// Writes linear colour after exposure and tone curve, or the values of a view, without the film. The header's
+// chromaticities and luminance of white are set to the display's.
 FileError write_developed_exr(const std::string& path, Developed developed, FrameHeader header,
                               const SampleTotals& samples);
 

@@ -27,6 +27,7 @@ libraries = [
     ("Embree", r"embree\d/", ["systems/build_*", "systems/intersect*", "systems/shadow*", "systems/accelerator.h"], None),
     ("OpenVDB", r"(openvdb|nanovdb)/", ["systems/media*"], None),
     ("OpenImageIO", r"OpenImageIO/", ["engine/files/*", "*/textures*", "*/images*", "*/image_*"], None),
+    ("OpenColorIO", r"OpenColorIO/", ["systems/ocio_*"], 1),
     ("OpenEXR", r"(OpenEXR/|Imf|Imath)", ["engine/files/*"], None),
     ("oneTBB", r"(oneapi/)?tbb/", ["engine/schedule/*"], None),
     ("jsoncpp", r"json/", ["scenes/*"], None),

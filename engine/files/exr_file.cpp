@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 #include "engine/files/exr_bands.h"
@@ -57,7 +58,7 @@ void describe(Imf::Header& exr, const FrameHeader& header) {
   const auto v2f = [](const std::array<float, 2>& xy) { return Imath::V2f(xy[0], xy[1]); };
   const Chromaticities& c = header.chromaticities;
   Imf::addChromaticities(exr, Imf::Chromaticities(v2f(c.red), v2f(c.green), v2f(c.blue), v2f(c.white)));
-  Imf::addWhiteLuminance(exr, 1.0f);
+  Imf::addWhiteLuminance(exr, header.white_luminance);
   exr.insert("software", Imf::StringAttribute(header.software));
   exr.insert("scene", Imf::StringAttribute(header.scene));
   exr.insert("seed", Imf::StringAttribute(std::to_string(header.seed)));
@@ -246,6 +247,58 @@ FileError read_checkpoint(const std::string& path, Film& film, FrameHeader& head
   return std::nullopt;
 }
 
+int number_of(const Imf::Header& exr, const std::string& name) {
+  const auto* attribute = exr.findTypedAttribute<Imf::IntAttribute>(name);
+  return attribute == nullptr ? 0 : std::max(attribute->value(), 0);
+}
+
+// Reads the last rows of the last part: throws where the file ends before. Where its blocks begin is told at the front.
+void touch_end(Imf::MultiPartInputFile& file) {
+  const int last = file.parts() - 1;
+  if (file.header(last).type() != Imf::SCANLINEIMAGE) return;
+  const char* bytes = nullptr;
+  int count = 0;
+  Imf::InputPart(file, last).rawPixelData(file.header(last).dataWindow().max.y, bytes, count);
+}
+
+FileError read_part_0(const std::string& path, Picture& picture, FrameHeader& header, SampleTotals& samples) {
+  const int threads = static_cast<int>(available_threads());
+  if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
+  Imf::MultiPartInputFile file(path.c_str(), threads);
+  for (int part = 0; part < file.parts(); ++part)
+    if (!file.partComplete(part)) return fmt::format("{}: it is incomplete, the file was cut short", path);
+  touch_end(file);
+  const Imf::Header& exr = file.header(0);
+  for (const char* name : {"R", "G", "B"})
+    if (const Imf::Channel* channel = exr.channels().findChannel(name);
+        channel == nullptr || channel->type != Imf::FLOAT || channel->xSampling != 1 || channel->ySampling != 1)
+      return fmt::format("{}: its first part has no 32-bit float channel '{}'", path, name);
+  const Imath::Box2i window = exr.dataWindow();
+  const int64_t columns = int64_t{window.max.x} - window.min.x + 1, rows = int64_t{window.max.y} - window.min.y + 1;
+  if (const FileError error = check_frame_size(static_cast<uint64_t>(columns), static_cast<uint64_t>(rows)))
+    return fmt::format("{}: {}", path, *error);
+  uint64_t seed = 0;
+  if (!parse_number(exr_text(exr, "seed"), seed))
+    return fmt::format("{}: its seed is missing; metamer render did not write it", path);
+  FrameHeader read_as = read_exr_header(exr);
+  Picture read{static_cast<uint32_t>(columns), static_cast<uint32_t>(rows), {}, {}, {}};
+  Imf::FrameBuffer buffer;
+  const std::array<std::pair<const char*, Column<float>*>, 3> channels = {
+      {{"R", &read.r}, {"G", &read.g}, {"B", &read.b}}};
+  for (const auto& [name, column] : channels) {
+    column->resize(read.pixel_count());
+    buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, column->data(), window));
+  }
+  Imf::InputPart part(file, 0);
+  part.setFrameBuffer(buffer);
+  part.readPixels(window.min.y, window.max.y);
+  picture = std::move(read);
+  header = std::move(read_as);
+  samples.fewest = static_cast<uint64_t>(number_of(exr, "samplesFewest"));
+  samples.most = static_cast<uint64_t>(number_of(exr, "samples"));
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string exr_text(const Imf::Header& exr, const std::string& name) {
@@ -266,6 +319,14 @@ FrameHeader read_exr_header(const Imf::Header& exr) {
       header.settings.emplace_back(name.substr(settings_prefix.size()), exr_text(exr, name));
   if (uint64_t seed = 0; parse_number(exr_text(exr, "seed"), seed)) header.seed = seed;
   return header;
+}
+
+FileError read_picture(const std::string& path, Picture& picture, FrameHeader& header, SampleTotals& samples) {
+  try {
+    return read_part_0(path, picture, header, samples);
+  } catch (const std::exception& error) {
+    return fmt::format("{}: cannot be read: {}", path, error.what());
+  }
 }
 
 FileError write_exr(const std::string& path, const Picture& picture, const FrameHeader& header,

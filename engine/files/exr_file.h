@@ -16,8 +16,9 @@ namespace metamer {
 // What a file says about its frame. Nothing here may depend on when, where or on how many threads it was made.
 struct FrameHeader {
   Chromaticities chromaticities;
-  std::string software;  // "metamer <version>"
-  std::string scene;     // its name
+  float white_luminance = 1;  // cd/m^2 of R = G = B = 1
+  std::string software;       // "metamer <version>"
+  std::string scene;          // its name
   uint64_t seed = 0;
   std::vector<std::pair<std::string, std::string>> settings;  // written as `metamer:<name>`, in any order
 };
@@ -27,6 +28,11 @@ struct FrameHeader {
 // none.
 FileError write_exr(const std::string& path, const Picture& picture, const FrameHeader& header,
                     const SampleTotals& samples, const Film* checkpoint, const Film* spectral = nullptr);
+
+// Reads the picture of part 0, which must have 32-bit float R, G and B, how many samples it has, and the header with
+// its settings in the order of their names. An error where there is none, or any part of the file is damaged or cut
+// short; then nothing is changed.
+FileError read_picture(const std::string& path, Picture& picture, FrameHeader& header, SampleTotals& samples);
 
 // Reads the film out of a checkpoint, and the header with its settings in the order of their names. The sums of its
 // bands, many times larger, can be left where they are: the film then has none. An error where there is no film in the

@@ -18,12 +18,11 @@ std::vector<uint8_t> interleaved(const CodedPicture& picture) {
 }
 
 // OpenImageIO compresses into memory, so that only the atomic file touches the disk.
-FileError encode(const std::string& path, const CodedPicture& picture, const std::string& software,
+FileError encode(const std::string& path, const CodedPicture& picture, const std::string& software, PngColours colours,
                  const std::vector<uint8_t>& icc, std::vector<unsigned char>& file) {
   OIIO::ImageSpec spec(static_cast<int>(picture.width), static_cast<int>(picture.height), 3, OIIO::TypeUInt8);
-  if (icc.empty())
-    spec.attribute("oiio:ColorSpace", "sRGB");
-  else
+  if (colours == PngColours::srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+  if (!icc.empty())
     spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(icc.size())), icc.data());
   spec.attribute("Software", software);
   OIIO::Filesystem::IOVecOutput memory(file);
@@ -35,16 +34,26 @@ FileError encode(const std::string& path, const CodedPicture& picture, const std
   return std::nullopt;
 }
 
-}  // namespace
-
-FileError write_png(const std::string& path, const CodedPicture& picture, const std::string& software,
-                    const std::vector<uint8_t>& icc) {
+FileError write(const std::string& path, const CodedPicture& picture, const std::string& software, PngColours colours,
+                const std::vector<uint8_t>& icc) {
   AtomicFile file;
   if (const FileError error = file.open(path)) return error;
   std::vector<unsigned char> bytes;
-  if (const FileError error = encode(path, picture, software, icc, bytes)) return error;
+  if (const FileError error = encode(path, picture, software, colours, icc, bytes)) return error;
   if (const FileError error = file.write(bytes.data(), bytes.size())) return error;
   return file.commit();
+}
+
+}  // namespace
+
+FileError write_png(const std::string& path, const CodedPicture& picture, const std::string& software,
+                    PngColours colours) {
+  return write(path, picture, software, colours, {});
+}
+
+FileError write_png(const std::string& path, const CodedPicture& picture, const std::string& software,
+                    const std::vector<uint8_t>& icc) {
+  return write(path, picture, software, PngColours::unknown, icc);
 }
 
 }  // namespace metamer

@@ -9,9 +9,14 @@
 
 namespace metamer {
 
-// Writes display-encoded codes with a chunk that says what they are: sRGB where `icc` is empty, else the colours of
-// this ICC profile. Equal arguments give equal bytes: no time, no host.
+// What the codes mean, where no profile says it: sRGB, by a chunk that says so, or what the file does not tell.
+enum class PngColours : uint8_t { srgb, unknown };
+
+// Writes display-encoded codes. Equal arguments give equal bytes: no time, no host.
 FileError write_png(const std::string& path, const CodedPicture& picture, const std::string& software,
-                    const std::vector<uint8_t>& icc = {});
+                    PngColours colours = PngColours::srgb);
+// With the colours of an ICC profile.
+FileError write_png(const std::string& path, const CodedPicture& picture, const std::string& software,
+                    const std::vector<uint8_t>& icc);
 
 }  // namespace metamer

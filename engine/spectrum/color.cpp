@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/spectrum/lamps.h"
 #include "engine/spectrum/sources.h"
 
 namespace metamer {
@@ -21,6 +22,19 @@ constexpr Matrix3 bradford = {{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.03
 constexpr Matrix3 cat16 = {
     {{0.401288, 0.650173, -0.051461}, {-0.250268, 1.204414, 0.045854}, {-0.002079, 0.048952, 0.953127}}};
 
+// X, Y, Z of red, green and blue as columns, of any length.
+Matrix3 primary_columns(ColorSpace id) {
+  if (id == ColorSpace::lamps) return lamps_to_tristimulus(Observer::cie1931);
+  const auto& xy = primaries[static_cast<size_t>(id)];
+  Matrix3 columns;
+  for (size_t c = 0; c < 3; ++c) {
+    columns[0][c] = xy[2 * c];
+    columns[1][c] = xy[2 * c + 1];
+    columns[2][c] = 1.0 - xy[2 * c] - xy[2 * c + 1];
+  }
+  return columns;
+}
+
 struct Space {
   Samples white_samples;
   Color3 white;
@@ -35,15 +49,7 @@ Space make_space(ColorSpace id) {
   const double y = space.white[1];
   for (double& component : space.white) component /= y;
 
-  const auto& xy = primaries[static_cast<size_t>(id)];
-  Matrix3 columns;
-  for (size_t c = 0; c < 3; ++c) {
-    const double x = xy[2 * c];
-    const double yc = xy[2 * c + 1];
-    columns[0][c] = x;
-    columns[1][c] = yc;
-    columns[2][c] = 1.0 - x - yc;
-  }
+  const Matrix3 columns = primary_columns(id);
   const Color3 scale = multiply(inverse(columns), space.white);
   for (size_t r = 0; r < 3; ++r) {
     for (size_t c = 0; c < 3; ++c) space.to_xyz[r][c] = columns[r][c] * scale[c];
@@ -53,9 +59,9 @@ Space make_space(ColorSpace id) {
 }
 
 const Space& space_of(ColorSpace space) {
-  static const std::array<Space, color_space_count> spaces = {
+  static const std::array<Space, color_space_count + 1> spaces = {
       make_space(ColorSpace::srgb), make_space(ColorSpace::dci_p3), make_space(ColorSpace::rec2020),
-      make_space(ColorSpace::aces2065_1)};
+      make_space(ColorSpace::aces2065_1), make_space(ColorSpace::lamps)};
   return spaces[static_cast<size_t>(space)];
 }
 
@@ -92,7 +98,9 @@ Matrix3 inverse(const Matrix3& m) {
 
 std::span<const std::string_view> color_space_names() { return names; }
 
-std::string_view color_space_name(ColorSpace space) { return names[static_cast<size_t>(space)]; }
+std::string_view color_space_name(ColorSpace space) {
+  return space == ColorSpace::lamps ? "lamps" : names[static_cast<size_t>(space)];
+}
 
 std::optional<ColorSpace> find_color_space(std::string_view name) {
   const auto found = std::find(names.begin(), names.end(), name);

@@ -18,11 +18,12 @@ Color3 multiply(const Matrix3& a, const Color3& v);
 // The matrix must be invertible.
 Matrix3 inverse(const Matrix3& m);
 
-// dci_p3 has the primaries of SMPTE RP 431-2 and the white of D65 (that is "Display P3").
-enum class ColorSpace : uint8_t { srgb, dci_p3, rec2020, aces2065_1 };
-inline constexpr size_t color_space_count = 4;
+// dci_p3 has the primaries of SMPTE RP 431-2 and the white of D65 (that is "Display P3"). lamps, which only displays
+// use, has the lamps of lamps.h as primaries and the white of D65.
+enum class ColorSpace : uint8_t { srgb, dci_p3, rec2020, aces2065_1, lamps };
+inline constexpr size_t color_space_count = 4;  // without lamps: those that scenes may name
 
-// "srgb", "dci-p3", "rec2020", "aces2065-1".
+// "srgb", "dci-p3", "rec2020", "aces2065-1"; `color_space_name` also "lamps".
 std::span<const std::string_view> color_space_names();
 std::string_view color_space_name(ColorSpace space);
 std::optional<ColorSpace> find_color_space(std::string_view name);

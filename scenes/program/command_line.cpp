@@ -44,7 +44,7 @@ Examples:
 
 constexpr const char* develop_footer =
     R"(IN.exr is what metamer render wrote, or a spectral OpenEXR file of others (channels such as S0.550,000nm). The
-observer of 1931 takes the film's exact sums where the file has them, else its bands; other observers need bands. A PNG
+observer of 1931 takes the picture of a file of metamer render, else bands; other observers need bands. A PNG
 is encoded for the display, with an ICC profile for all but srgb; an EXR stays linear and takes exposure and tone curve
 too. Without --exposure a PNG takes that of the render, an EXR none.
 
@@ -95,7 +95,7 @@ void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
          fmt::format("{}: light on sampled wavelengths, or as three coefficients, faster and less true; spectral if "
                      "not given",
                      fmt::join(color_mode_names(), ", ")));
-  option("--exposure", texts.exposure, "STOPS", "Brightens the PNG by powers of 2; the EXR stays as it is");
+  option("--exposure", texts.exposure, "STOPS|auto", "Brightens the PNG by powers of 2, as in develop; not the EXR");
   add_look_flags(*render, texts.look);
   option("--stats", arguments.stats, "STATS.json", "Write times, rays and memory there");
   render->add_flag("--preview-only", arguments.preview_only, "Leave the film's exact sums out of the EXR");
@@ -182,6 +182,8 @@ void note_extras(const CLI::App& app, const CLI::App* command, Mistakes& mistake
                                    command->get_option(input_of(*command).first)->as<std::string>()));
 }
 
+bool is_automatic(const std::string& exposure) { return in_lower_case(exposure) == "auto"; }
+
 SceneOverrides parse_overrides(const CLI::App& render, const RenderTexts& texts, Mistakes& mistakes) {
   SceneOverrides overrides;
   const auto given = [&](const char* flag) { return render.count(flag) > 0; };
@@ -201,17 +203,19 @@ SceneOverrides parse_overrides(const CLI::App& render, const RenderTexts& texts,
   if (given("--seed")) overrides.seed = parse_count("--seed", texts.seed, 0, 0xffffffffu, mistakes);
   if (given("--spectral"))
     overrides.band_count = parse_count("--spectral", texts.spectral, 0, max_band_count, mistakes);
-  if (given("--exposure"))
-    overrides.exposure_stops = parse_real("--exposure", texts.exposure, -largest_exposure, largest_exposure, mistakes);
   if (given("--color"))
     if (const auto index = parse_name("--color", texts.color, color_mode_names(), mistakes))
       overrides.color = static_cast<ColorMode>(*index);
+  if (given("--exposure") && !is_automatic(texts.exposure))
+    overrides.exposure_stops =
+        parse_real("--exposure", texts.exposure, -largest_exposure, largest_exposure, mistakes, " or auto");
   return overrides;
 }
 
 void parse_render(const CLI::App& render, const RenderTexts& texts, RenderArguments& arguments, Mistakes& mistakes) {
   arguments.overrides = parse_overrides(render, texts, mistakes);
   arguments.look = parse_look(render, texts.look, mistakes);
+  arguments.automatic_exposure = render.count("--exposure") > 0 && is_automatic(texts.exposure);
   if (render.count("--threads") > 0)
     arguments.threads = parse_count("--threads", texts.threads, 1, most_threads, mistakes).value_or(0);
   if (render.count("--tile") > 0)
@@ -227,7 +231,7 @@ void parse_develop(const CLI::App& develop, const DevelopTexts& texts, DevelopAr
                    Mistakes& mistakes) {
   arguments.look = parse_look(develop, texts.look, mistakes);
   if (develop.count("--exposure") > 0) {
-    arguments.automatic_exposure = in_lower_case(texts.exposure) == "auto";
+    arguments.automatic_exposure = is_automatic(texts.exposure);
     if (!arguments.automatic_exposure)
       arguments.exposure_stops =
           parse_real("--exposure", texts.exposure, -largest_exposure, largest_exposure, mistakes, " or auto");

@@ -27,9 +27,10 @@ struct RenderArguments {
   std::string scene;            // empty: the default scene
   std::string exr, png, stats;  // as given; empty: not given
   SceneOverrides overrides;
-  uint32_t threads = 0;     // 0: all
-  uint32_t tile_size = 32;  // pixels
-  Look look;                // of the PNG; all but its exposure and threads
+  uint32_t threads = 0;             // 0: all
+  uint32_t tile_size = 32;          // pixels
+  Look look;                        // of the PNG; all but its exposure and threads
+  bool automatic_exposure = false;  // of the PNG, instead of the scene's
   bool preview_only = false;
   bool quiet = false;
 };

@@ -12,6 +12,7 @@
 #include "engine/files/spectral_exr.h"
 #include "scenes/program/commands.h"
 #include "scenes/program/failure.h"
+#include "scenes/program/look_report.h"
 #include "scenes/program/signals.h"
 #include "systems/develop_bands.h"
 #include "systems/display_colour.h"
@@ -49,39 +50,44 @@ void check_input(const std::string& path) {
                                         "spectral ones of others");
 }
 
+// By which a developed EXR is known.
+constexpr const char* tone_map_setting = "tonemap";
+
 // What there is to develop.
-struct Observed {
-  XyzPicture xyz;
+struct Seen {
+  std::optional<XyzPicture> xyz;  // of bands
+  Picture picture;                // else linear sRGB
   FrameHeader header;
   SampleTotals samples;  // none where only bands were read
 };
 
-Observed observe_film(const std::string& path, uint32_t threads) {
-  Film film;
-  Observed observed;
-  if (const FileError error = read_film(path, film, observed.header, FilmBands::left_out))
-    throw Failure(exit_wrong_input, *error);
-  observed.xyz = observe(film, Observer::cie1931, threads);
-  observed.samples = sample_totals(film);
-  return observed;
+void refuse_developed(const std::string& path, const FrameHeader& header) {
+  for (const auto& [name, value] : header.settings)
+    if (name == tone_map_setting)
+      throw Failure(exit_wrong_input, path + ": has been developed already; develop takes what metamer render wrote");
 }
 
-// The 1931 observer takes the film's exact sums where there are some; all others, and files without a film, the bands.
-Observed observe_file(const std::string& path, Observer observer, uint32_t threads) {
+// The 1931 observer takes the picture that render wrote; all others, and spectral files of others, the bands.
+Seen look_at_file(const std::string& path, Observer observer, uint32_t threads) {
   ExrContents contents;
   if (const FileError error = look_into_exr(path, contents)) throw Failure(exit_wrong_input, *error);
-  if (observer == Observer::cie1931 && (contents.has_film || !contents.has_bands)) return observe_film(path, threads);
+  Seen seen;
+  if (observer == Observer::cie1931 && (contents.has_film || !contents.has_bands)) {
+    if (const FileError error = read_picture(path, seen.picture, seen.header, seen.samples))
+      throw Failure(exit_wrong_input, *error);
+    refuse_developed(path, seen.header);
+    return seen;
+  }
   if (!contents.has_bands)
     throw Failure(exit_wrong_input,
                   fmt::format("{}: --observer {}: holds no bands, only what the cie1931 observer sees; metamer render "
                               "--spectral records bands",
                               path, observer_name(observer)));
-  SpectralPicture picture;
-  Observed observed;
-  if (const FileError error = read_spectral_picture(path, picture, observed.header))
+  SpectralPicture spectral;
+  if (const FileError error = read_spectral_picture(path, spectral, seen.header))
     throw Failure(exit_wrong_input, *error);
-  observed.xyz = integrate_bands(picture, band_matrix(picture.edges_nm, observer), threads);
-  return observed;
+  seen.xyz = integrate_bands(spectral, band_matrix(spectral.edges_nm, observer), threads);
+  return seen;
 }
 
 // What the frame was rendered with, if the file remembers.
@@ -119,7 +125,7 @@ void describe(FrameHeader& header, const Look& look, float exposure_stops) {
   header.settings.emplace_back("display", display_name(look.display));
   header.settings.emplace_back("white", white_text(look.white));
   if (look.white) header.settings.emplace_back("adaptation", adaptation_names()[static_cast<size_t>(look.adaptation)]);
-  header.settings.emplace_back("tonemap", tone_curve_name(look.curve));
+  header.settings.emplace_back(tone_map_setting, tone_map_text(look));
 }
 
 }  // namespace
@@ -128,15 +134,16 @@ int run_develop(const DevelopArguments& arguments) {
   const OutputKind kind = check_output(arguments);
   check_input(arguments.input);
   install_signal_handlers(cancellation);
-  const Observed observed = observe_file(arguments.input, arguments.look.observer, arguments.threads);
-  FrameHeader header = observed.header;
+  const Seen seen = look_at_file(arguments.input, arguments.look.observer, arguments.threads);
+  FrameHeader header = seen.header;
   const Look look = chosen_look(arguments, kind, header);
-  Developed developed = develop(observed.xyz, look);
+  Developed developed = seen.xyz ? develop(*seen.xyz, look) : develop(seen.picture, look);
   const float stops = developed.tone.exposure_stops;
   describe(header, look, stops);
+  if (!arguments.quiet) tell_negative_amounts(developed);
   const FileError error = kind == OutputKind::png
-                              ? write_developed_png(arguments.output, developed, header.software)
-                              : write_developed_exr(arguments.output, std::move(developed), header, observed.samples);
+                              ? write_developed_png(arguments.output, std::move(developed), header.software)
+                              : write_developed_exr(arguments.output, std::move(developed), header, seen.samples);
   if (error) throw Failure(exit_failed, *error);
   if (!arguments.quiet) {
     if (arguments.automatic_exposure) fmt::print(stderr, "metamer: exposure {:+.2f} stops\n", stops);

@@ -30,6 +30,44 @@ std::optional<Color3> parse_white(const std::string& text, Observer observer, Mi
   return std::nullopt;
 }
 
+// Those of tone_map.h, and ACES.
+std::vector<std::string_view> tone_map_names() {
+  std::vector<std::string_view> names(tone_curve_names().begin(), tone_curve_names().end());
+  names.push_back("aces");
+  return names;
+}
+
+void parse_tone_map(const CLI::App& command, const LookTexts& texts, Look& look, Mistakes& mistakes) {
+  const std::vector<std::string_view> names = tone_map_names();
+  if (command.count("--tonemap") > 0)
+    if (const auto index = parse_name("--tonemap", texts.tone_map, names, mistakes)) {
+      look.aces = *index == tone_curve_count;
+      if (!look.aces) look.curve = static_cast<ToneCurve>(*index);
+    }
+  if (command.count("--tonemap-white") == 0) return;
+  if (const auto white = parse_real("--tonemap-white", texts.tone_map_white, 1e-3f, 1e6f, mistakes))
+    look.reinhard_white = *white;
+  if (look.curve != ToneCurve::reinhard_extended)
+    mistakes.push_back("--tonemap-white: belongs to --tonemap reinhard-extended");
+}
+
+void parse_ocio(const CLI::App& command, const LookTexts& texts, Look& look, Mistakes& mistakes) {
+  if (command.count("--ocio") == 0) {
+    for (const char* flag : {"--ocio-display", "--ocio-view"})
+      if (command.count(flag) > 0) mistakes.push_back(fmt::format("{}: no configuration was given by --ocio", flag));
+    return;
+  }
+  for (const char* flag : {"--display", "--tonemap"})
+    if (command.count(flag) > 0) mistakes.push_back(fmt::format("{}: with --ocio, the view decides that", flag));
+  if (texts.ocio.empty()) {
+    mistakes.push_back("--ocio: the name of an OpenColorIO configuration was expected");
+    return;
+  }
+  OcioView view{texts.ocio, texts.ocio_display, texts.ocio_view};
+  if (OcioError error = resolve(view)) mistakes.push_back(*error);
+  look.view = view;
+}
+
 }  // namespace
 
 void add_look_flags(CLI::App& command, LookTexts& texts) {
@@ -43,7 +81,11 @@ void add_look_flags(CLI::App& command, LookTexts& texts) {
          "What shall look neutral: d65, d50, a, a temperature such as 3200, or none (as recorded) if not given");
   option("--adaptation", texts.adaptation, "NAME",
          "How --white is reached: " + names_text(adaptation_names()) + "; cat16 if not given");
-  option("--tonemap", texts.curve, "NAME", names_text(tone_curve_names()) + "; linear if not given");
+  option("--tonemap", texts.tone_map, "NAME", names_text(tone_map_names()) + "; linear if not given");
+  option("--tonemap-white", texts.tone_map_white, "L", "The light that reinhard-extended makes white; 4 if not given");
+  option("--ocio", texts.ocio, "CONFIG", "An OpenColorIO configuration, instead of --display and --tonemap");
+  option("--ocio-display", texts.ocio_display, "NAME", "Its display; its default one if not given");
+  option("--ocio-view", texts.ocio_view, "NAME", "Its view; the display's default one if not given");
 }
 
 Look parse_look(const CLI::App& command, const LookTexts& texts, Mistakes& mistakes) {
@@ -62,9 +104,8 @@ Look parse_look(const CLI::App& command, const LookTexts& texts, Mistakes& mista
     if (!given("--white") || in_lower_case(texts.white) == "none")
       mistakes.push_back("--adaptation: says how to reach a white, but no --white was given");
   }
-  if (given("--tonemap"))
-    if (const auto index = parse_name("--tonemap", texts.curve, tone_curve_names(), mistakes))
-      look.curve = static_cast<ToneCurve>(*index);
+  parse_tone_map(command, texts, look, mistakes);
+  parse_ocio(command, texts, look, mistakes);
   return look;
 }
 

@@ -8,14 +8,15 @@
 
 namespace metamer {
 
-// Flags as text, the way they were written. Without --observer, --display, --white, --adaptation or --tonemap the look's defaults.
+// Flags as text, the way they were written; where they are not given, the look's defaults.
 struct LookTexts {
-  std::string observer, display, white, adaptation, curve;
+  std::string observer, display, white, adaptation, tone_map, tone_map_white;
+  std::string ocio, ocio_display, ocio_view;
 };
 
 void add_look_flags(CLI::App& command, LookTexts& texts);
 
-// The look without its exposure, which the commands read themselves.
+// The look without its exposure, which the commands read themselves. Reads the configuration that --ocio names.
 Look parse_look(const CLI::App& command, const LookTexts& texts, Mistakes& mistakes);
 
 }  // namespace metamer

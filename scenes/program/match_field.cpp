@@ -59,8 +59,7 @@ Picture match_field(const Color3& amounts) {
     Color3 alone{};
     alone[lamp] = 1;
     const int side = amounts[lamp] < 0 ? 100 : disc_x + 40;
-    draw_bar(picture, side + 50 * static_cast<int>(lamp), std::fabs(amounts[lamp]) / largest,
-             shown(alone));
+    draw_bar(picture, side + 50 * static_cast<int>(lamp), std::fabs(amounts[lamp]) / largest, shown(alone));
   }
   return picture;
 }

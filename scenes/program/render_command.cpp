@@ -8,10 +8,12 @@
 #include "scenes/program/commands.h"
 #include "scenes/program/failure.h"
 #include "scenes/program/load.h"
+#include "scenes/program/look_report.h"
 #include "scenes/program/outputs.h"
 #include "scenes/program/progress.h"
 #include "scenes/program/signals.h"
 #include "scenes/program/stats.h"
+#include "systems/display_colour.h"
 #include "systems/write_frame.h"
 
 namespace metamer {
@@ -110,6 +112,16 @@ std::unique_ptr<World> make_world(const RenderArguments& arguments, const std::s
   return std::move(built.world);
 }
 
+Developed seen(const Film& film, const RenderArguments& arguments) {
+  return develop(film, develop(observe(film, Observer::cie1931, arguments.threads)), arguments.look);
+}
+
+float automatic_stops(const Film& film, const RenderArguments& arguments) {
+  const float stops = automatic_exposure_stops(seen(film, arguments).picture, arguments.look.display);
+  if (!arguments.quiet) fmt::print(stderr, "metamer: exposure {:+.2f} stops\n", stops);
+  return stops;
+}
+
 void trace(const RenderArguments& arguments, const World& world, Film& film, FrameReport& report,
            Clock::time_point program_start) {
   RenderProgress progress;
@@ -148,7 +160,9 @@ int run_render(const RenderArguments& arguments, Clock::time_point program_start
   if (report.samples.total == 0) throw Failure(exit_failed, "interrupted before the first pixel; nothing was written");
 
   tell_result(report, arguments.quiet);
-  FileError errors = write_frame(film, write_settings(arguments, outputs, scene_title(path), world->settings));
+  if (arguments.automatic_exposure) report.settings.exposure_stops = automatic_stops(film, arguments);
+  if (!arguments.quiet && arguments.look.display == ColorSpace::lamps) tell_negative_amounts(seen(film, arguments));
+  FileError errors = write_frame(film, write_settings(arguments, outputs, scene_title(path), report.settings));
   if (!outputs.stats.empty())
     if (const FileError error = write_stats(outputs.stats, report)) errors = errors ? *errors + "\n" + *error : *error;
   if (errors) throw Failure(exit_failed, *errors);

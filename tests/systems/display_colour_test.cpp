@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "engine/spectrum/lamps.h"
 #include "systems/write_frame.h"
+#include "tests/support/each_target.h"
 
 namespace metamer {
 namespace {
@@ -36,9 +38,98 @@ TEST(DisplayColour, TheChosenWhiteBecomesNeutralAndKeepsItsLuminance) {
   for (size_t d = 0; d < display_names().size(); ++d)
     for (const Adaptation adaptation : {Adaptation::bradford, Adaptation::cat16})
       for (const Color3& white : {white_at(0), white_at(1), white_at(2), white_of_temperature(9000)}) {
-        const Color3 rgb = developed(white, display_at(d), white, adaptation);
-        for (const double component : rgb) EXPECT_NEAR(component, 1, 1e-6) << display_names()[d];
+        const Color3 rgb = developed(white, display_at(d), white, adaptation), one = white_amounts(display_at(d));
+        for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(rgb[c] / one[c], 1, 2e-6) << display_names()[d];
       }
+}
+
+// The amounts of light of 500 nm, 1 W m^-2 sr^-1, are those of the matching experiment, in units of 1/683.
+TEST(DisplayColour, OfLampsIsTheirAmounts) {
+  Color3 xyz = Color3(observer_value(Observer::cie1931, 500.0));
+  for (double& v : xyz) v *= 683;
+  const Color3 rgb = developed(xyz, ColorSpace::lamps, std::nullopt, Adaptation::cat16);
+  const Color3 expected = lamp_amounts_of_line(500.0, Observer::cie1931);
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(rgb[c], 683 * expected[c], 1e-3);
+  EXPECT_LT(rgb[0], -0.2 * 683);
+  const Color3 white = developed(white_at(0), ColorSpace::lamps, std::nullopt, Adaptation::cat16);
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(white[c], white_amounts(ColorSpace::lamps)[c], 1e-6);
+}
+
+TEST(DisplayColour, LinearLampsStateTheirUnit) {
+  const Chromaticities c = linear_chromaticities(ColorSpace::lamps);
+  const auto red = chromaticity(Color3(observer_value(Observer::cie1931, 645.16)));
+  EXPECT_FLOAT_EQ(c.red[0], static_cast<float>(red[0]));
+  // X Y Z of R = G = B = 1 from the stated white and its luminance.
+  const float Y = linear_white_luminance(ColorSpace::lamps);
+  const Color3 sum = multiply(display_to_xyz(ColorSpace::lamps), Color3{1, 1, 1});
+  EXPECT_NEAR(Y * c.white[0] / c.white[1], sum[0], 1e-5);
+  EXPECT_NEAR(Y, sum[1], 1e-6);
+  EXPECT_EQ(linear_chromaticities(ColorSpace::rec2020), display_chromaticities(ColorSpace::rec2020));
+  EXPECT_EQ(linear_white_luminance(ColorSpace::srgb), 1);
+}
+
+TEST(Gamut, NegativeAmountsGiveWayWithoutAChangeOfLuminance) {
+  for (const ColorSpace display : {ColorSpace::srgb, ColorSpace::lamps}) {
+    const Color3 rgb = {-0.3, 0.5, 0.2}, mapped = into_gamut(rgb, display);
+    EXPECT_NEAR(mapped[0], 0, 1e-15);
+    EXPECT_GT(mapped[1], mapped[2]);
+    EXPECT_NEAR(multiply(rgb_to_xyz(display), mapped)[1], multiply(rgb_to_xyz(display), rgb)[1], 1e-12);
+    EXPECT_EQ(into_gamut({0.1, 2, 0}, display), (Color3{0.1, 2, 0}));
+    EXPECT_EQ(into_gamut({-2, 0.1, 0.1}, ColorSpace::srgb), (Color3{0, 0, 0}));
+  }
+}
+
+Picture picture_of(const std::vector<Color3>& colours) {
+  Picture picture{static_cast<uint32_t>(colours.size()), 1, {}, {}, {}};
+  for (const Color3& c : colours) {
+    picture.r.push_back(static_cast<float>(c[0]));
+    picture.g.push_back(static_cast<float>(c[1]));
+    picture.b.push_back(static_cast<float>(c[2]));
+  }
+  return picture;
+}
+
+TEST(Gamut, CodesOfLampsAreMappedAsTheScalarFormSaysOnEveryInstructionSet) {
+  std::vector<Color3> colours;
+  for (double r = -1.5; r < 1.5; r += 0.17)
+    for (double g = -0.5; g < 1.5; g += 0.23)
+      for (double b = -0.5; b < 1.5; b += 0.31) colours.push_back({r, g, b});
+  const Color3 white = white_amounts(ColorSpace::lamps);
+  std::vector<Color3> amounts = colours;
+  for (Color3& a : amounts)
+    for (size_t c = 0; c < 3; ++c) a[c] *= white[c];
+  const Picture picture = picture_of(amounts);
+  ToneSettings settings;
+  settings.display = ColorSpace::lamps;
+  settings.dither = false;
+  for_each_target([&] {
+    const CodedPicture coded = tone_map(picture, settings);
+    for (size_t i = 0; i < colours.size(); ++i) {
+      const Color3 expected = into_gamut(colours[i], ColorSpace::lamps);
+      for (size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(static_cast<double>(coded.codes[i] >> (8 * c) & 255), 255 * srgb_encode_scalar(expected[c]), 0.502)
+            << i;
+    }
+  });
+}
+
+TEST(Gamut, NegativeAmountsAreCounted) {
+  const NegativeAmounts negative = negative_amounts(picture_of({{1, 2, 3}, {-1, 2, 3}, {-2, -3, 1}, {0, 0, 0}}));
+  EXPECT_EQ(negative.pixels, 2u);
+  EXPECT_EQ(negative.least, (std::array<float, 3>{-2, -3, 0}));
+}
+
+// Linear amounts of lamps are what an EXR holds: without exposure and curve to the last bit.
+TEST(Develop, OfLampsKeepsNegativeAmounts) {
+  Picture picture = picture_of({{-0.295, 0.4906, 0.10749}});
+  ToneSettings settings;
+  settings.display = ColorSpace::lamps;
+  expose(picture, settings);
+  EXPECT_EQ(picture.r[0], -0.295f);
+  settings.exposure_stops = 1;
+  expose(picture, settings);
+  EXPECT_NEAR(picture.r[0], -0.59, 1e-6);
+  EXPECT_NEAR(picture.b[0], 0.21498, 1e-6);
 }
 
 // D50 white unadapted on sRGB is yellowish, and the methods differ away from white.
@@ -105,7 +196,7 @@ Film film_of(float X, float Y, float Z, uint32_t copies) {
 // Grassmann: what is developed before the tone curve is linear in the light.
 TEST(Develop, IsLinearInTheLightBeforeToneMapping) {
   const auto colour = [](float X, float Y, float Z, const Look& look) {
-    Developed d = develop(film_of(X, Y, Z, 7), look);
+    Developed d = develop(develop(observe(film_of(X, Y, Z, 7), Observer::cie1931, 1)), look);
     expose(d.picture, d.tone);
     return Color3{d.picture.r[0], d.picture.g[0], d.picture.b[0]};
   };
@@ -118,7 +209,8 @@ TEST(Develop, IsLinearInTheLightBeforeToneMapping) {
       const Color3 a = colour(3, 5, 0.5f, look), b = colour(0.25f, 4, 20, look);
       const Color3 sum = colour(3.25f, 9, 20.5f, look), twice = colour(6, 10, 1, look);
       for (size_t i = 0; i < 3; ++i) {
-        const double size = std::fabs(a[i]) + std::fabs(b[i]);
+        double size = 0;  // of the colours: components may nearly cancel
+        for (size_t c = 0; c < 3; ++c) size = std::max(size, std::fabs(a[c]) + std::fabs(b[c]));
         EXPECT_NEAR(sum[i], a[i] + b[i], 1e-6 * size);
         EXPECT_NEAR(twice[i], 2 * a[i], 1e-6 * size);
       }

@@ -73,6 +73,20 @@ TEST(ToneCurve, AgxMeetsFiveColoursComputedIndependently) {
   }
 }
 
+TEST(ToneCurve, OfReinhardExtendedReachesWhereItIsTold) {
+  for (const float white : {1.0f, 2.5f, 100.0f}) {
+    Picture picture = picture_of({{white, white, white}, {0.5f, 0.5f, 0.5f}});
+    ToneSettings settings;
+    settings.curve = ToneCurve::reinhard_extended;
+    settings.reinhard_white = white;
+    expose(picture, settings);
+    EXPECT_NEAR(picture.g[0], 1, 1e-6) << white;
+    const double expected = 0.5 * (1 + 0.5 / (double{white} * double{white})) / 1.5;
+    EXPECT_NEAR(picture.g[1], expected, 1e-6) << white;
+    EXPECT_NEAR(tone_curve_scalar(settings.curve, ColorSpace::srgb, {0.5, 0.5, 0.5}, white)[1], expected, 1e-12);
+  }
+}
+
 // Reinhard's curve acts on luminance: 0.2126390, 0.7151687, 0.0721923 are sRGB's weights, for its rounded white.
 TEST(ToneCurve, OfReinhardKeepsTheChromaticity) {
   const std::array<float, 3> plain = exposed({1, 0.2f, 0.05f}, ToneCurve::reinhard);

@@ -44,13 +44,18 @@ TEST_F(DevelopCommand, AndRenderMakeTheSamePngOfTheSameLook) {
   for (const Arguments& look : std::vector<Arguments>{{"--tonemap", "agx", "--display", "p3"},
                                                       {"--white", "a", "--adaptation", "bradford"},
                                                       {"--white", "5000K", "--tonemap", "reinhard-extended"},
-                                                      {"--display", "rec2020", "--tonemap", "FILMIC"}}) {
+                                                      {"--display", "rec2020", "--tonemap", "FILMIC"},
+                                                      {"--display", "lamps"},
+                                                      {"--tonemap", "aces"},
+                                                      {"--exposure", "auto"},
+                                                      {"--tonemap", "reinhard-extended", "--tonemap-white", "2"}}) {
     Arguments render = {"render", "small.json", "-q", "-o", "other.exr", "--exposure", "0.75"};
     render.insert(render.end(), look.begin(), look.end());
     ASSERT_EQ(run(render).exit_code, 0);
     EXPECT_EQ(bytes("other.png"), png(look)) << look[1];
     EXPECT_NE(bytes("other.png"), bytes("small.png")) << look[1];
-    EXPECT_EQ(bytes("other.exr"), bytes("small.exr")) << "the film is not changed by how it looks";
+    if (look[0] != "--exposure")  // which the EXR remembers for its PNG
+      EXPECT_EQ(bytes("other.exr"), bytes("small.exr")) << "the film is not changed by how it looks";
   }
 }
 
@@ -100,9 +105,72 @@ TEST_F(DevelopCommand, ThreadsAndInstructionSetsChangeNoByte) {
   EXPECT_EQ(pictures.size(), 1u);
 }
 
+TEST_F(DevelopCommand, NeedsNoFilmOnlyThePicture) {
+  ASSERT_EQ(run({"render", "small.json", "-q", "--preview-only", "-o", "preview.exr", "--exposure", "0.75"}).exit_code,
+            0);
+  EXPECT_EQ(run({"develop", "preview.exr", "-q", "-o", "again.png"}).exit_code, 0);
+  EXPECT_EQ(bytes("again.png"), bytes("small.png"));
+}
+
+// The amounts of the lamps are those whose X Y Z the recorded colour has.
+TEST_F(DevelopCommand, LampsReportNegativeAmountsAndKeepThemInAnExr) {
+  const ProgramResult result = run({"develop", "small.exr", "-o", "lamps.exr", "--display", "lamps"});
+  EXPECT_THAT(result.err, testing::AnyOf(HasSubstr("need a negative amount of a lamp: red down to"),
+                                         HasSubstr("no pixel needs a negative amount")));
+  const std::vector<float> srgb = light({}), lamps = light({"--display", "lamps"});
+  for (size_t i = 0; i < srgb.size(); i += 3) {
+    const double Y = 0.2126390 * srgb[i] + 0.7151687 * srgb[i + 1] + 0.0721923 * srgb[i + 2];
+    // ybar at 645.16, 526.32 and 444.44 nm, CIE 1931.
+    const double of_lamps = 0.137128 * lamps[i] + 0.812714 * lamps[i + 1] + 0.0289887 * lamps[i + 2];
+    EXPECT_NEAR(of_lamps, Y, 1e-3 * Y) << i;
+  }
+}
+
+constexpr std::string_view view_config = R"(ocio_profile_version: 2
+roles:
+  default: raw
+  scene_linear: lin
+file_rules:
+  - !<Rule> {name: Default, colorspace: default}
+displays:
+  desk:
+    - !<View> {name: film, colorspace: root}
+    - !<View> {name: linear, colorspace: lin}
+active_displays: [desk]
+active_views: []
+colorspaces:
+  - !<ColorSpace>
+    name: raw
+    isdata: true
+  - !<ColorSpace>
+    name: lin
+  - !<ColorSpace>
+    name: root
+    from_scene_reference: !<ExponentTransform> {value: [0.5, 0.5, 0.5, 1]}
+)";
+
+TEST_F(DevelopCommand, TakesAnOpenColorIOConfiguration) {
+  folder_.write("view.ocio", view_config);
+  const std::vector<float> plain = light({}), root = light({"--ocio", "view.ocio"}),
+                           linear = light({"--ocio", "view.ocio", "--ocio-display", "desk", "--ocio-view", "linear"});
+  for (size_t i = 0; i < plain.size(); ++i) {
+    EXPECT_NEAR(linear[i], plain[i], 1e-6);
+    EXPECT_NEAR(root[i], std::sqrt(std::max(plain[i], 0.0f)), 2e-3);
+  }
+  const std::string film = png({"--ocio", "view.ocio"}), other = png({"--ocio", "view.ocio", "--ocio-view", "linear"});
+  EXPECT_NE(film, other);
+  // Only the configuration knows what the codes mean.
+  EXPECT_THAT(film, testing::Not(HasSubstr("iCCP")));
+  EXPECT_THAT(film, testing::Not(HasSubstr("sRGB")));
+  ASSERT_EQ(run({"render", "small.json", "-q", "-o", "o.exr", "--exposure", "0.75", "--ocio", "view.ocio"}).exit_code,
+            0);
+  EXPECT_EQ(bytes("o.png"), film);
+}
+
 TEST_F(DevelopCommand, RefusesWhatItCannotDoAndLeavesNothingBehind) {
-  ASSERT_EQ(run({"render", "small.json", "-q", "--preview-only", "-o", "preview.exr"}).exit_code, 0);
+  ASSERT_EQ(run({"develop", "small.exr", "-q", "-o", "developed.exr"}).exit_code, 0);
   folder_.write("cut.exr", bytes("small.exr").substr(0, bytes("small.exr").size() * 3 / 4));
+  folder_.write("view.ocio", view_config);
   const std::set<std::string> before = names_in(folder());
   struct Case {
     Arguments arguments;
@@ -115,8 +183,7 @@ TEST_F(DevelopCommand, RefusesWhatItCannotDoAndLeavesNothingBehind) {
       {{"none.exr", "-o", "a.png"}, 2, "none.exr: cannot be opened: No such file"},
       {{".", "-o", "a.png"}, 2, "is a folder"},
       {{"small.png", "-o", "a.png"}, 2, "small.png: is not an OpenEXR file"},
-      {{"preview.exr", "-o", "a.png"}, 2, "holds no film part"},
-      {{"preview.exr", "-o", "a.png"}, 2, "--preview-only"},
+      {{"developed.exr", "-o", "a.png"}, 2, "developed.exr: has been developed already"},
       {{"cut.exr", "-o", "a.png"}, 2, "cut.exr: "},
       {{"small.exr", "-o", "small.exr"}, 2, "is the film itself"},
       {{"small.exr", "-o", "a.jpg"}, 2, "'.jpg' is an unknown kind of picture"},
@@ -129,6 +196,13 @@ TEST_F(DevelopCommand, RefusesWhatItCannotDoAndLeavesNothingBehind) {
       {{"small.exr", "-o", "a.png", "--white", ""}, 2, "--white: unknown white ''"},
       {{"small.exr", "-o", "a.png", "--white", "a", "--adaptation", "cat61"}, 2, "did you mean 'cat16'?"},
       {{"small.exr", "-o", "a.png", "--adaptation", "cat16"}, 2, "no --white was given"},
+      {{"small.exr", "-o", "a.png", "--tonemap-white", "3"}, 2, "belongs to --tonemap reinhard-extended"},
+      {{"small.exr", "-o", "a.png", "--tonemap", "reinhard-extended", "--tonemap-white", "0"}, 2, "--tonemap-white: "},
+      {{"small.exr", "-o", "a.png", "--ocio", "none.ocio"}, 2, "none.ocio: "},
+      {{"small.exr", "-o", "a.png", "--ocio", ""}, 2, "--ocio: "},
+      {{"small.exr", "-o", "a.png", "--ocio-view", "film"}, 2, "no configuration was given by --ocio"},
+      {{"small.exr", "-o", "a.png", "--ocio", "view.ocio", "--tonemap", "agx"}, 2, "the view decides that"},
+      {{"small.exr", "-o", "a.png", "--ocio", "view.ocio", "--ocio-view", "fine"}, 2, "there are film, linear"},
       {{"small.exr", "-o", "a.png", "--exposure", "atuo"}, 2, "from -100 to 100 or auto, not 'atuo'"},
       {{"small.exr", "-o", "a.png", "--threads", "0"}, 2, "--threads: expected a whole number"},
       {{"small.exr", "-o", "a.png", "--tonmap", "agx"}, 2, "unknown flag '--tonmap' (did you mean '--tonemap'?)"},
