@@ -1,5 +1,5 @@
 // metamer render --spectral and what develop makes of it, as users see it.
-#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imageio.h>
 
 #include "tests/scenes/program/run_program.h"
 
@@ -12,14 +12,21 @@ using testing::StartsWith;
 
 class Spectral : public ProgramTest {
  protected:
+  // Not by way of an ImageBuf, whose cache shows an older file of the same name and second.
+  std::unique_ptr<OIIO::ImageInput> opened(const std::string& name) const {
+    auto file = OIIO::ImageInput::open((folder() / name).string());
+    EXPECT_TRUE(file) << name;
+    return file;
+  }
   std::vector<std::string> channels(const std::string& name) const {
-    return OIIO::ImageBuf((folder() / name).string()).spec().channelnames;
+    const auto file = opened(name);
+    return file ? file->spec().channelnames : std::vector<std::string>();
   }
   // Linear R, G, B of all pixels.
   std::vector<float> light(const std::string& name) const {
-    const OIIO::ImageBuf image((folder() / name).string());
+    const auto file = opened(name);
     std::vector<float> values(16 * 12 * 3);
-    EXPECT_TRUE(image.get_pixels(OIIO::ROI(0, 16, 0, 12, 0, 1, 0, 3), OIIO::TypeFloat, values.data()));
+    EXPECT_TRUE(file && file->read_image(0, 0, 0, 3, OIIO::TypeFloat, values.data()));
     return values;
   }
 };
