@@ -126,6 +126,22 @@ TEST_F(DevelopCommand, LampsReportNegativeAmountsAndKeepThemInAnExr) {
   }
 }
 
+// Light of 500 nm, 1 W m^-2 sr^-1, in bands of 5 nm: the observer's own amounts, -0.295, 0.4906 and 0.10749 (Stiles &
+// Burch 1955), times 683. A band is wider than the line, hence 2 %.
+TEST_F(DevelopCommand, PassesTheAmountsOfStilesAndBurchToTheLampsUnchanged) {
+  folder_.write("green.json", R"({"metamer": 1,
+  "settings": {"size": [16, 12], "samples": 64, "max_depth": 1, "filter": {"type": "box"}},
+  "entities": [{"camera": {"type": "perspective", "fov": 40}},
+    {"light": {"type": "environment", "radiance": {"table": [[495, 0], [500, 0.2], [505, 0]]}}}]})");
+  ASSERT_EQ(run({"render", "green.json", "-q", "-o", "small.exr", "--spectral", "72", "--spp", "256"}).exit_code, 0);
+  const std::vector<float> amounts = light({"--observer", "stiles-burch1955", "--display", "lamps"});
+  double mean[3] = {};
+  for (size_t i = 0; i < amounts.size(); ++i) mean[i % 3] += amounts[i] * 3.0 / static_cast<double>(amounts.size());
+  EXPECT_NEAR(mean[0] / 683, -0.295, 0.006);
+  EXPECT_NEAR(mean[1] / 683, 0.4906, 0.01);
+  EXPECT_NEAR(mean[2] / 683, 0.10749, 0.004);
+}
+
 constexpr std::string_view view_config = R"(ocio_profile_version: 2
 roles:
   default: raw
