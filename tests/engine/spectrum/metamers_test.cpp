@@ -43,7 +43,9 @@ TEST_P(Metamers, AreEqualInOneLightAndSplitInAnotherAndForAnotherObserver) {
     for (size_t i = 0; i < metamer_points; ++i) {
       EXPECT_GE(curve[i], metamer_least);
       EXPECT_LE(curve[i], metamer_most);
-      if (i > 0) EXPECT_LT(std::fabs(curve[i] - curve[i - 1]), 0.3);
+      if (i > 0) {
+        EXPECT_LT(std::fabs(curve[i] - curve[i - 1]), 0.3);
+      }
     }
 }
 

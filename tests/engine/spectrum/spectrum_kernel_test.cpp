@@ -95,7 +95,8 @@ TEST(SpectrumKernel, InRgbModeReadsTheCoefficientOfEachChannel) {
     Batch batch;
     std::vector<SpectrumId> given;
     for (size_t i = 0, spectra = batch.set.size(); i < spectra; ++i)
-      given.push_back(batch.set.with_coefficients(static_cast<SpectrumId>(i), {double(i), i + 0.25, i + 0.5}));
+      given.push_back(
+          batch.set.with_coefficients(static_cast<SpectrumId>(i), {double(i), double(i) + 0.25, double(i) + 0.5}));
     for (size_t i = 0; i < Batch::rows; ++i) {
       batch.id[i] = given[batch.id[i]];
       for (size_t j = 0; j < 4; ++j)
