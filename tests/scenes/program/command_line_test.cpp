@@ -44,7 +44,7 @@ TEST_F(CommandLine, RefusesBadValuesWithOneLineEachAndExit2) {
       {{"--integrator", ""}, "--integrator: unknown name ''"},
       {{"--integrator"}, "--integrator: a value was expected after it"},
       {{"--color", "lamp"}, "--color: unknown name 'lamp' (did you mean 'lamps'?)"},
-      {{"--exposure", "nan"}, "--exposure: expected a number from -100 to 100, not 'nan'"},
+      {{"--exposure", "nan"}, "--exposure: expected a number from -100 to 100 or auto, not 'nan'"},
       {{"--exposure", "inf"}, "not 'inf'"},
       {{"--exposure", "1e9"}, "not '1e9'"},
       {{"--spp"}, "--spp: a value was expected after it"},
