@@ -2,7 +2,7 @@
 // columns together stay within a core's L2 cache. Nothing here outlives a batch, except the slots, which live
 // until the batch is accumulated.
 //
-// Per path: PathStream 88 bytes, twice (this bounce's and the next one's rays); HitStream 12; ShadeStream 216;
+// Per path: PathStream 88 bytes, twice (this bounce's and the next one's rays); HitStream 12; ShadeStream 240;
 // ShadowStream 48; Slots 56.
 #pragma once
 #include <array>
@@ -118,6 +118,7 @@ struct ShadeStream {
   Columns<float, 3> position;                 // metres
   Columns<float, 3> normal;                   // geometric, unit, on the side the shape calls its outside
   Columns<float, 3> shading_normal, tangent;  // unit; tangent only where the world asks for it
+  Columns<float, 2> uv;                       // only where the world has textures
   float* distance;                            // metres from the previous vertex
   float* offset;                              // metres along the normal that a new ray must start away from the surface
   uint32_t* material;                         // row in the table of the kind
@@ -127,6 +128,8 @@ struct ShadeStream {
   uint32_t *pixel_seed, *index, *slot;
   Columns<uint32_t, 2> media;  // of the ray that came, where `carries_media`; corrected by `media`
   bool carries_media = false;
+  // Writer: textures, in lanes whose material has one.
+  Columns<float, 4> reflectance;
   // Writer: light_sample. Lanes without a light sample have radiance 0.
   Columns<float, 3> light_direction;  // unit, from the vertex
   Columns<float, 4> light_radiance;   // already divided by the pdf

@@ -46,6 +46,7 @@ MaterialRow add_coated(const Material& material, World& world) {
   const bool schlick = material.fresnel == FresnelModel::schlick;
   const CoatRows rows = rows_of(material, alpha, schlick, table, world.spectra);
   table.reflectance.push_back(material.reflectance);
+  table.texture.push_back(material.reflectance_texture);
   table.eta.push_back(material.eta);
   table.alpha.push_back(alpha);
   table.schlick.push_back(schlick);

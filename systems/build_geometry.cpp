@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 
 #include "systems/freeze.h"
 #include "systems/light_rows.h"
@@ -62,6 +63,8 @@ bool is_within_reach(const glm::dmat4& to_world, double extent) {
   return true;
 }
 
+constexpr float no_uv = std::numeric_limits<float>::quiet_NaN();
+
 void push_vector(Column<float>& column, const glm::dvec3& v) {
   for (int i = 0; i < 3; ++i) column.push_back(static_cast<float>(v[i]));
 }
@@ -90,8 +93,8 @@ uint32_t add_triangles(Builder& b, const Mesh& mesh, const glm::dmat4& to_world,
       normal = length > 0 ? (flip ? -normal : normal) / length : glm::dvec3(0);
     }
     push_vector(world.normals, normal);
-    world.uvs.push_back(has_uvs ? mesh.uvs[v].x : 0.0f);
-    world.uvs.push_back(has_uvs ? mesh.uvs[v].y : 0.0f);
+    world.uvs.push_back(has_uvs ? mesh.uvs[v].x : no_uv);
+    world.uvs.push_back(has_uvs ? mesh.uvs[v].y : no_uv);
   }
   const auto vector_at = [](const Column<float>& column, uint32_t v) {
     return glm::dvec3(column[v * 3], column[v * 3 + 1], column[v * 3 + 2]);

@@ -12,8 +12,10 @@ namespace metamer {
 namespace {
 
 MaterialRow add_diffuse(const Material& material, World& world) {
-  if (world.spectra.max_value(material.reflectance) == 0) return {ShadeKind::absorber, 0};
+  const bool textured = material.reflectance_texture != no_index;
+  if (!textured && world.spectra.max_value(material.reflectance) == 0) return {ShadeKind::absorber, 0};
   world.diffuse.reflectance.push_back(material.reflectance);
+  world.diffuse.texture.push_back(material.reflectance_texture);
   return {ShadeKind::diffuse, static_cast<uint32_t>(world.diffuse.reflectance.size() - 1)};
 }
 

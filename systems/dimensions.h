@@ -17,10 +17,16 @@ enum BounceDimension : uint32_t {
   lobe_dimension,          // 1D: which lobe of the BSDF
   direction_dimension,     // 2D: where in the lobe
   roulette_dimension,      // 1D
+  texture_dimension,       // 2D, of the first image of a texture; others have dimensions of their own
 };
 
 constexpr uint32_t bounce_dimension(uint32_t depth, BounceDimension dimension) {
   return first_bounce_dimension + depth * dimensions_per_bounce + dimension;
+}
+
+// Every image that a texture looks up has a point of its own: products of two would be biased by a common one.
+constexpr uint32_t texture_image_dimension(uint32_t depth, uint32_t nth) {
+  return bounce_dimension(depth, texture_dimension) + nth * 0x10000;
 }
 
 }  // namespace metamer

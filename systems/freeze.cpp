@@ -16,6 +16,7 @@ std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   const Filter& filter = scene.settings.filter;
   world->filter = make_pixel_filter(filter.kind, filter.radius_x, filter.radius_y, filter.sigma);
   const std::vector<glm::dmat4> to_world = build_transforms(scene, diagnostics);
+  build_textures(scene, *world, diagnostics);
   const std::vector<MaterialRow> materials = build_materials(scene, *world, diagnostics);
   build_geometry(scene, to_world, materials, *world, diagnostics);
   build_lights(scene, to_world, *world, diagnostics);

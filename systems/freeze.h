@@ -24,6 +24,9 @@ struct MaterialRow {
 // form creates energy at normal view; the albedos of its normalised form sum to more than 1.
 std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagnostics& diagnostics);
 
+// Textures as programs, program i for texture i; images as texels. Errors: expressions that need too deep a stack.
+void build_textures(const Scene& scene, World& world, Diagnostics& diagnostics);
+
 // Objects, vertices, quadrics, and the light rows of emitting shapes.
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
                     World& world, Diagnostics& diagnostics);

@@ -15,7 +15,7 @@ HWY_INLINE CoatOptics coat_optics(const World& world, const CoatedColumns& table
   VF lambda_nm[4];
   load(shade.lambda_nm, i, lambda_nm);
   CoatOptics optics;
-  eval_spectrum4(spectra, gather(table.reflectance.data(), row), lambda_nm, optics.albedo);
+  lane_reflectance(world, table.reflectance, table.texture, row, shade, i, optics.albedo);
   eval_spectrum4(spectra, gather(table.eta.data(), row), lambda_nm, optics.eta);
   optics.schlick = float_mask(hn::Ne(gather(table.schlick.data(), row), splat_u(0)));
   optics.table = table.albedos.data();

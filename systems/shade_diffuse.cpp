@@ -10,12 +10,11 @@ namespace metamer::HWY_NAMESPACE {
 namespace {
 
 void shade_diffuse_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
-  const SpectrumView spectra = world.spectra.view();
   const Group& group = group_of(shade, ShadeKind::diffuse);
   for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
-    VF lambda_nm[4], albedo[4], f_cos[4], pdf, u, v;
-    load(shade.lambda_nm, i, lambda_nm);
-    eval_spectrum4(spectra, gather(world.diffuse.reflectance.data(), material_row(shade, i)), lambda_nm, albedo);
+    VF albedo[4], f_cos[4], pdf, u, v;
+    const VI row = material_row(shade, i);
+    lane_reflectance(world, world.diffuse.reflectance, world.diffuse.texture, row, shade, i, albedo);
     const Frame frame = shading_frame(world, shade, i);
     const Vec3 wo = to_local(frame, load(shade.wo, i));
     if (work.weigh_light) {

@@ -41,6 +41,7 @@ HWY_INLINE Vec3 transform_normal(const Matrix& inverse, const Vec3& n) {
 
 struct Surface {
   Vec3 position, normal, shading_normal, tangent;
+  VF u, v;
   VF offset;
 };
 
@@ -116,13 +117,18 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
   const Vec3 reach = max(max(abs(p[0]), abs(p[1])), abs(p[2]));
   surface.offset = hn::MulAdd(splat(2 * eps), dot(abs(surface.normal), reach), surface.offset);
 
-  if (world.needs_tangents) {
+  if (world.needs_tangents || world.has_textures()) {
     VF u[3], v[3];
     for (int k = 0; k < 3; ++k) {
       const VI at = hn::Add(vertex[k], vertex[k]);
       u[k] = gather(world.uvs.data(), at);
       v[k] = gather(world.uvs.data() + 1, at);
+      const MF missing = hn::IsNaN(u[k]);
+      u[k] = hn::IfThenElse(missing, splat(k > 0 ? 1.0f : 0.0f), u[k]);
+      v[k] = hn::IfThenElse(missing, splat(k > 1 ? 1.0f : 0.0f), v[k]);
     }
+    surface.u = hn::MulAdd(b0, u[0], hn::MulAdd(b1, u[1], hn::Mul(b2, u[2])));
+    surface.v = hn::MulAdd(b0, v[0], hn::MulAdd(b1, v[1], hn::Mul(b2, v[2])));
     const VF du1 = hn::Sub(u[1], u[0]), dv1 = hn::Sub(v[1], v[0]);
     const VF du2 = hn::Sub(u[2], u[0]), dv2 = hn::Sub(v[2], v[0]);
     const VF uv_area = hn::MulSub(du1, dv2, hn::Mul(dv1, du2));
@@ -130,6 +136,18 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
     surface.tangent = if_then_else(hn::Eq(uv_area, zero), make_frame(shading).s, along_u);
   }
   return surface;
+}
+
+// u is the angle around z over 2 pi. v runs on a sphere from the lower pole to the upper one, by angle; on a disk from
+// its rim (0) to its inner edge (1).
+HWY_INLINE void quadric_uv(const Vec3& local, VF radius, VF inner_radius, MF sphere, Surface& surface) {
+  const VF zero = hn::Zero(FloatTag()), one = splat(1.0f);
+  const VF around = hn::Mul(atan2(local.y, local.x), splat(0.5f * inverse_pi));
+  surface.u = hn::IfThenElse(hn::Lt(around, zero), hn::Add(around, one), around);
+  const VF across = hn::Sqrt(hn::MulAdd(local.x, local.x, hn::Mul(local.y, local.y)));
+  const VF from_top = hn::Mul(atan2(across, local.z), splat(inverse_pi));
+  const VF width = hn::Max(hn::Sub(radius, inner_radius), splat(FLT_MIN));
+  surface.v = hn::IfThenElse(sphere, hn::Sub(one, from_top), hn::Div(hn::Sub(radius, across), width));
 }
 
 // The distance comes from our own double-precision callback; the point is put back onto the quadric.
@@ -162,6 +180,7 @@ HWY_INLINE Surface quadric_surface(const World& world, const Vec3& origin, const
   const Vec3 along = {hn::Neg(local.y), local.x, zero};
   const MF pole = hn::Eq(hn::Add(hn::Abs(local.x), hn::Abs(local.y)), zero);
   surface.tangent = transform_vector(m, if_then_else(pole, Vec3{one, zero, zero}, along));
+  if (world.has_textures()) quadric_uv(local, radius, gather(&first.inner_radius, base), sphere, surface);
   return surface;
 }
 
@@ -216,12 +235,18 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
       s.normal = if_then_else(quadric, q.normal, s.normal);
       s.shading_normal = if_then_else(quadric, q.shading_normal, s.shading_normal);
       s.tangent = if_then_else(quadric, q.tangent, s.tangent);
+      s.u = hn::IfThenElse(quadric, q.u, s.u);
+      s.v = hn::IfThenElse(quadric, q.v, s.v);
       s.offset = hn::IfThenElse(quadric, q.offset, s.offset);
     }
     store(s.position, shade.position, i);
     store(s.normal, shade.normal, i);
     store(s.shading_normal, shade.shading_normal, i);
     if (world.needs_tangents) store(s.tangent, shade.tangent, i);
+    if (world.has_textures()) {
+      store(s.u, shade.uv[0], i);
+      store(s.v, shade.uv[1], i);
+    }
     store(s.offset, shade.offset, i);
     const Vec3 travelled = s.position - origin;
     store(hn::Sqrt(dot(travelled, travelled)), shade.distance, i);

@@ -59,6 +59,9 @@ void sort_hits(const World& world, uint32_t size, const HitStream& hits, uint32_
 void surface(const World& world, const PathStream& paths, const HitStream& hits, const uint32_t* order,
              ShadeStream& shade);
 
+// Values of materials that vary over their surface, computed in order of the textures. Nothing without textures.
+void textures(const World& world, uint32_t depth, ShadeStream& shade);
+
 // Where the world has interiors: what a path turns out to have been inside of all the time, and what that absorbed on
 // the way from the vertex before.
 void media(const World& world, ShadeStream& shade);

@@ -5,6 +5,7 @@
 #include <glm/vec4.hpp>
 
 #include "engine/ecs/registry.h"
+#include "engine/ecs/texture.h"
 
 namespace metamer {
 
@@ -58,6 +59,7 @@ inline constexpr uint32_t largest_priority = 255;
 struct Material {
   MaterialKind kind = MaterialKind::diffuse;
   SpectrumId reflectance = 0;
+  TextureId reflectance_texture = no_index;  // in place of `reflectance`
   SpectrumId eta = 0, kappa = 0;
   float alpha_x = 0, alpha_y = 0;
   FresnelModel fresnel = FresnelModel::exact;
@@ -67,10 +69,10 @@ struct Material {
   uint32_t priority = 0;    // up to largest_priority; 0: not followed; the index is against whatever is around
   uint32_t thin = 0;
   float thickness = 0;  // metres; of a thin one with kappa
-  static constexpr auto fields =
-      std::make_tuple(&Material::kind, &Material::reflectance, &Material::eta, &Material::kappa, &Material::alpha_x,
-                      &Material::alpha_y, &Material::fresnel, &Material::kd, &Material::ks, &Material::shininess,
-                      &Material::normalized, &Material::priority, &Material::thin, &Material::thickness);
+  static constexpr auto fields = std::make_tuple(
+      &Material::kind, &Material::reflectance, &Material::reflectance_texture, &Material::eta, &Material::kappa,
+      &Material::alpha_x, &Material::alpha_y, &Material::fresnel, &Material::kd, &Material::ks, &Material::shininess,
+      &Material::normalized, &Material::priority, &Material::thin, &Material::thickness);
 };
 
 // The entity whose Material covers this entity's surface. Without a slot (and without a Material of its own) a

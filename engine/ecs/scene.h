@@ -85,6 +85,7 @@ struct Scene {
   SpectrumSet spectra;
   std::vector<Mesh> meshes;
   std::vector<Image> images;
+  std::vector<Texture> textures;
   NameTable names;
   RenderSettings settings;
 

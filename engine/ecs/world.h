@@ -34,6 +34,7 @@ static_assert(sizeof(Placement) == 32 * sizeof(float));
 
 struct DiffuseColumns {
   Column<uint32_t> reflectance;  // SpectrumId
+  Column<uint32_t> texture;      // program of TextureSet in its place, or no_index
 };
 struct RoughColumns {
   Column<uint32_t> kd, ks;  // SpectrumId
@@ -43,6 +44,7 @@ struct RoughColumns {
 // Two of these: coats with a smooth surface and with a rough one. See systems/bsdf/coat_albedo.h for the table.
 struct CoatedColumns {
   Column<uint32_t> reflectance, eta;  // SpectrumId
+  Column<uint32_t> texture;           // program of TextureSet in place of `reflectance`, or no_index
   Column<float> alpha;
   Column<uint32_t> schlick;
   Column<uint32_t> first_row, row_stride, last_pair;  // of `albedos`
@@ -151,7 +153,7 @@ struct World {
   ObjectColumns objects;
   Column<float> positions;             // three per vertex, and one of padding at the end
   Column<float> normals;               // three per vertex; (0, 0, 0): use the geometric one
-  Column<float> uvs;                   // two per vertex
+  Column<float> uvs;                   // two per vertex; NaN: (0, 0), (1, 0), (1, 1) on every triangle, as in pbrt
   Column<uint32_t> triangle_vertices;  // three per triangle
   Column<Placement> placements;
   DiffuseColumns diffuse;
@@ -166,6 +168,7 @@ struct World {
   Distribution1D light_choice;          // over the rows of lights that are sampled; empty where there is none
   Column<uint32_t> summed_lights;  // rows of abstract lights that are summed one by one (local, recursive), not sampled
   Environment environment;
+  TextureSet textures;
   CameraRow camera;
   SpectrumSet spectra;
   RenderSettings settings;
@@ -176,6 +179,7 @@ struct World {
   bool has_instances = false;   // some triangles are in their object's space
   bool has_quadrics = false;
   bool has_interiors = false;  // some material is followed: paths carry their media
+  bool has_textures() const { return !textures.programs.empty(); }
   uint64_t zero_area_triangles = 0;
   std::unique_ptr<Accelerator, void (*)(Accelerator*)> accelerator{nullptr, nullptr};
 };

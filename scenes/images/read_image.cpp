@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "engine/simd/portable_math.h"
 #include "scenes/file_bytes.h"
@@ -15,9 +16,18 @@ namespace {
 
 constexpr int64_t most_pixels = int64_t{1} << 31;
 
-float decode_srgb(float encoded) {
-  const double e = encoded;
-  return static_cast<float>(e <= 0.04045 ? e / 12.92 : portable::pow((e + 0.055) / 1.055, 2.4));
+double decode(double encoded, const ImageEncoding& encoding) {
+  if (encoding.gamma > 0) return encoding.gamma == 1 ? encoded : portable::pow(encoded, encoding.gamma);
+  return encoded <= 0.04045 ? encoded / 12.92 : portable::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+// The decoded value of every code of 8 or 16 bits.
+std::vector<float> decoding_table(bool is_wide, const ImageEncoding& encoding) {
+  std::vector<float> table(is_wide ? 65536 : 256);
+  const double last = static_cast<double>(table.size() - 1);
+  for (size_t code = 0; code < table.size(); ++code)
+    table[code] = static_cast<float>(decode(static_cast<double>(code) / last, encoding));
+  return table;
 }
 
 // Which channels of the file are red, green and blue: by name, else the first three, or one for all of grey.
@@ -43,7 +53,8 @@ bool check_pixels(const Image& image, Diagnostics& diagnostics) {
 
 }  // namespace
 
-bool read_image(const std::string& path, const SourceLocation& named_at, Image& image, Diagnostics& diagnostics) {
+bool read_image(const std::string& path, const SourceLocation& named_at, Image& image, Diagnostics& diagnostics,
+                const ImageEncoding& encoding) {
   if (!check_readable(path, named_at, diagnostics)) return false;
   OIIO::ImageSpec wishes;
   wishes.attribute("oiio:UnassociatedAlpha", 1);  // colours as the file holds them, not multiplied by its alpha
@@ -74,10 +85,13 @@ bool read_image(const std::string& path, const SourceLocation& named_at, Image& 
     return fail(fmt::format("{} x {} pixels do not fit in memory", spec.width, spec.height));
   }
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data())) return fail(input->geterror());
+  std::vector<float> decoded;
+  if (is_encoded) decoded = decoding_table(spec.format.basetype == OIIO::TypeDesc::UINT16, encoding);
+  const float last_code = static_cast<float>(decoded.size()) - 1;
   for (size_t pixel = 0; pixel < static_cast<size_t>(pixels); ++pixel) {
     for (size_t c = 0; c < 3; ++c) {
       const float value = all[pixel * channel_count + static_cast<size_t>(channels[c])];
-      image.rgb[3 * pixel + c] = is_encoded ? decode_srgb(value) : value;
+      image.rgb[3 * pixel + c] = is_encoded ? decoded[static_cast<size_t>(value * last_code + 0.5f)] : value;
     }
   }
   return check_pixels(image, diagnostics);

@@ -93,9 +93,6 @@ void medium_interface(Reader& reader, Tokenizer& tokens, std::string_view direct
 
 // Texture "name" "spectrum" "kind" parameters.
 void texture(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
-  constexpr std::string_view kinds[] = {"bilerp", "checkerboard", "constant", "directionmix", "dots",
-                                        "fbm",    "imagemap",     "marble",   "mix",          "ptex",
-                                        "scale",  "windy",        "wrinkled"};
   const auto name = read_string(reader, tokens, directive, source);
   if (!name) return;
   const auto type = read_string(reader, tokens, directive, source);
@@ -104,18 +101,15 @@ void texture(Reader& reader, Tokenizer& tokens, std::string_view directive, Sour
     reader.messages.error(source, fmt::format("a texture is \"spectrum\" or \"float\", not \"{}\"", *type));
     return tokens.skip_to_directive();
   }
-  const bool fresh = (*type == "float" ? reader.float_textures : reader.spectrum_textures).insert(*name).second;
-  if (!fresh) reader.messages.error(source, fmt::format("texture '{}' is defined twice", *name));
-  read_with_parameters(reader, tokens, directive, source, {}, [&](const std::string& kind, Parameters& parameters) {
-    parameters.ignore_the_rest();
-    if (std::find(std::begin(kinds), std::end(kinds), kind) == std::end(kinds)) {
-      return reader.messages.error(source,
-                                   fmt::format("there is no texture \"{}\"{}", kind, did_you_mean(kind, kinds)));
-    }
-    reader.messages.warning_once(
-        "texture " + kind, source,
-        fmt::format("texture \"{}\" is not supported yet; what it would colour gets its default value", kind));
-  });
+  const bool is_number = *type == "float";
+  auto& textures = is_number ? reader.float_textures : reader.spectrum_textures;
+  std::optional<TextureId> made;
+  read_with_parameters(reader, tokens, directive, source, reader.attributes(AttributeTarget::texture),
+                       [&](const std::string& kind, Parameters& parameters) {
+                         made = read_texture(reader, kind, parameters, is_number);
+                       });
+  if (!textures.try_emplace(*name, made).second)
+    reader.messages.error(source, fmt::format("texture '{}' is defined twice", *name));
 }
 
 void attribute(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {

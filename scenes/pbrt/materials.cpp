@@ -33,8 +33,13 @@ SpectrumId spectrum_or(const std::optional<SpectrumValue>& value, SpectrumId fal
 
 void read_diffuse(Reader& reader, Parameters& parameters, Material& material) {
   material.kind = MaterialKind::diffuse;
+  material.reflectance = reader.scene.spectra.add_constant(0.5).id;
+  if (parameters.is_texture("reflectance")) {
+    material.reflectance_texture = read_texture_parameter(reader, parameters, "reflectance", false).value_or(no_index);
+    return;
+  }
   const auto reflectance = read_spectrum(reader, parameters, "reflectance", RgbKind::albedo, SpectrumAlso::texture);
-  material.reflectance = spectrum_or(reflectance, reader.scene.spectra.add_constant(0.5).id);
+  material.reflectance = spectrum_or(reflectance, material.reflectance);
 }
 
 // pbrt's inversion: eta = 1 and k = 2 sqrt(R) / sqrt(1 - R), whose reflectance at normal incidence is R.

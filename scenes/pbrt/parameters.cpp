@@ -184,6 +184,14 @@ bool Parameters::has(std::string_view name) const {
          std::any_of(defaults_.begin(), defaults_.end(), [&](const Parameter* p) { return p->name == name; });
 }
 
+bool Parameters::is_texture(std::string_view name) const {
+  const auto named = [&](const Parameter& p) { return p.name == name; };
+  const auto own = std::find_if(list_.begin(), list_.end(), named);
+  if (own != list_.end()) return own->type == ParameterType::texture;
+  return std::any_of(defaults_.begin(), defaults_.end(),
+                     [&](const Parameter* p) { return named(*p) && p->type == ParameterType::texture; });
+}
+
 void Parameters::error(std::string_view name, std::string message) {
   const Parameter* parameter = lookup(name);
   messages_.error(parameter != nullptr ? parameter->source : source_, what_ + ": " + message);

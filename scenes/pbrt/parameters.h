@@ -79,6 +79,7 @@ class Parameters {
   const Parameter* find(std::string_view name, ParameterType type) { return find(name, {&type, 1}); }
 
   bool has(std::string_view name) const;
+  bool is_texture(std::string_view name) const;  // given, and as a texture
   double number(std::string_view name, double fallback);
   // A number from `least` up; else an error and the fallback.
   double number_from(std::string_view name, double fallback, double least);

@@ -80,7 +80,9 @@ struct Reader {
   std::map<std::string, glm::dmat4> coordinate_systems = {};
   std::map<std::string, NamedMaterial> materials = {};
   std::vector<Entity> interface_materials = {};
-  std::set<std::string> spectrum_textures = {}, float_textures = {};
+  // Nothing where a texture could not be made, which has been said.
+  std::map<std::string, std::optional<TextureId>> spectrum_textures = {}, float_textures = {};
+  std::map<std::pair<std::string, double>, std::optional<ImageId>> images = {};  // by path and encoding
   std::map<std::string, std::vector<ShapeRecord>> objects = {};
   std::optional<std::string> object = {};  // between ObjectBegin and ObjectEnd
   std::vector<Instance> instances = {};
@@ -125,6 +127,12 @@ std::optional<SpectrumValue> read_spectrum(Reader& reader, Parameters& parameter
                                            SpectrumAlso also);
 // A "float" parameter that may be a texture (reported, the fallback returned).
 double read_real_or_texture(Reader& reader, Parameters& parameters, std::string_view name, double fallback);
+
+// textures.cpp. `kind` is the third string of the directive; nothing where it is not supported or wrong.
+std::optional<TextureId> read_texture(Reader& reader, std::string_view kind, Parameters& parameters, bool is_number);
+// The texture that a parameter names; nothing if it is not a texture, or none that could be made.
+std::optional<TextureId> read_texture_parameter(Reader& reader, Parameters& parameters, std::string_view name,
+                                                bool is_number);
 
 // materials.cpp
 Entity read_material(Reader& reader, std::string_view kind, Parameters& parameters, Entity entity);

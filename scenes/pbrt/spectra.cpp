@@ -136,17 +136,18 @@ struct SpectrumReader {
 };
 
 void report_texture(Reader& reader, Parameters& parameters, const Parameter& parameter,
-                    const std::set<std::string>& textures) {
+                    const std::map<std::string, std::optional<TextureId>>& textures) {
   const std::string name = parameter.strings.size() == 1 ? parameter.strings[0] : "";
   if (!textures.contains(name)) {
-    const std::vector<std::string_view> known(textures.begin(), textures.end());
+    std::vector<std::string_view> known;
+    for (const auto& [texture, id] : textures) known.push_back(texture);
     reader.messages.error(parameter.source, fmt::format("{}: there is no texture '{}'{}", parameters.what(), name,
                                                         did_you_mean(name, known)));
     return;
   }
   reader.messages.warning_once(
       "texture for " + parameter.name, parameter.source,
-      fmt::format("textures are not supported yet; '{}' gets its default value", parameter.name));
+      fmt::format("textures for '{}' are not supported yet; it gets its default value", parameter.name));
 }
 
 }  // namespace

@@ -167,8 +167,8 @@ TEST(PbrtMaterials, ReflectancesAboveOneAreClampedWithAWarning) {
 
 TEST(PbrtMaterials, WhatReplacesTheUnsupportedIsSaidOncePerKind) {
   const ReadScene read = read_world(
-      std::string("Texture \"wood\" \"spectrum\" \"imagemap\" \"string filename\" \"wood.png\"\n") +
-      "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere +
+      std::string("Texture \"wood\" \"spectrum\" \"fbm\" Texture \"glass\" \"spectrum\" \"fbm\"\n") +
+      "Material \"dielectric\" \"texture eta\" \"glass\"" + sphere +
       "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere +
       "Material \"coateddiffuse\" \"rgb reflectance\" [.2 .2 .2] \"float thickness\" 1" + sphere +
       "Material \"hair\" \"float eumelanin\" 1" + sphere + "Material \"hair\" \"float eumelanin\" 1" + sphere +
@@ -177,8 +177,8 @@ TEST(PbrtMaterials, WhatReplacesTheUnsupportedIsSaidOncePerKind) {
   EXPECT_THAT(
       read.messages,
       testing::ElementsAre(
-          "scene:2: warning: texture \"imagemap\" is not supported yet; what it would colour gets its default value",
-          "scene:3: warning: textures are not supported yet; 'reflectance' gets its default value",
+          "scene:2: warning: texture \"fbm\" is not supported yet; what it would colour gets its default value",
+          "scene:3: warning: textures for 'eta' are not supported yet; it gets its default value",
           "scene:5: warning: material \"coateddiffuse\": its layer has no thickness here and absorbs nothing, and all "
           "internal reflections count; it looks lighter than pbrt's",
           "scene:5: warning: Material \"coateddiffuse\": 'thickness' is not supported yet; the layer has no thickness "
