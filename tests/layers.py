@@ -32,6 +32,8 @@ libraries = [
     ("oneTBB", r"(oneapi/)?tbb/", ["engine/schedule/*"], None),
     ("jsoncpp", r"json/", ["scenes/*"], None),
     ("CLI11", r"CLI/", ["scenes/program/*"], None),
+    ("zlib", r"zlib\.h", ["scenes/*"], 1),
+    ("OpenSubdiv", r"opensubdiv/", ["scenes/*"], 1),
     ("tinyobjloader", r"tiny_obj_loader\.h", ["scenes/*"], 1),
     ("GoogleTest", r"g(test|mock)/", [], None),
     ("Google Benchmark", r"benchmark/", [], None),

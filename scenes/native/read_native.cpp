@@ -1,5 +1,6 @@
 #include "scenes/native/read_native.h"
 
+#include "scenes/gzip.h"
 #include "scenes/native/components.h"
 #include "scenes/native/entities.h"
 #include "scenes/native/settings.h"
@@ -31,7 +32,8 @@ void read_scene_object(SceneContext& context, const Json::Value& root) {
 
 bool read_native(const std::string& path, Scene& scene, Diagnostics& diagnostics) {
   FileBytes bytes;
-  return read_file(path, {path, 0}, bytes, diagnostics) && read_native(path, std::move(bytes), scene, diagnostics);
+  return read_packed_file(path, {path, 0}, bytes, diagnostics) &&
+         read_native(path, std::move(bytes), scene, diagnostics);
 }
 
 bool read_native(const std::string& path, FileBytes bytes, Scene& scene, Diagnostics& diagnostics) {

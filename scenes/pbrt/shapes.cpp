@@ -70,18 +70,14 @@ double mean_face_area(const Mesh& mesh, const glm::dmat4& transform, size_t tria
 
 std::optional<Shape> read_mesh_shape(Reader& reader, std::string_view kind, Parameters& parameters) {
   std::optional<ReadMesh> read;
-  if (kind == "trianglemesh" || kind == "loopsubdiv") {
+  if (kind == "trianglemesh") {
     read = read_triangle_mesh(reader, parameters);
+  } else if (kind == "loopsubdiv") {
+    read = read_loop_mesh(reader, parameters);
   } else if (kind == "bilinearmesh") {
     read = read_bilinear_mesh(reader, parameters);
   } else {
     read = read_ply_mesh(reader, parameters);
-  }
-  if (kind == "loopsubdiv") {
-    parameters.integer("levels", 3, 0);
-    parameters.string("scheme", "loop");
-    reader.messages.warning_once("loopsubdiv", parameters.source(),
-                                 "Shape \"loopsubdiv\" is not supported yet; its control mesh is rendered");
   }
   if (!read) return std::nullopt;
   Shape shape{{.kind = ShapeKind::mesh, .mesh = read->id}, 0};
