@@ -4,58 +4,62 @@
 // Highway's headers come after foreach_target.
 #include <utility>
 
-#include "engine/sampling/points-inl.h"
 #include "engine/spectrum/spectrum-inl.h"
 #include "systems/dimensions.h"
 #include "systems/lanes-inl.h"
 #include "systems/systems.h"
+#include "systems/texture_points-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
 namespace {
 
-// What a texture may ask about a lane.
-struct TexturePoint {
-  VF u, v;
-  VF lambda_nm[4];
-  PointKey key;
-  uint32_t depth;
-};
-
-// A texel's row or column, and whether there is one.
+// A texel's column and row, and whether there is one.
 struct TexelIndex {
-  VI index;
+  VI column, row;
   MF inside;
 };
-HWY_INLINE TexelIndex wrapped(VF position, uint32_t size, TextureWrap wrap) {
-  const VF extent = splat(static_cast<float>(size)), zero = hn::Zero(FloatTag());
-  const VI last = hn::Set(IntTag(), static_cast<int32_t>(size) - 1);
-  const MF inside = hn::And(hn::Le(zero, position), hn::Lt(position, extent));
-  if (wrap == TextureWrap::repeat) position = hn::NegMulAdd(hn::Floor(hn::Div(position, extent)), extent, position);
-  const VI index = hn::ConvertTo(IntTag(), hn::Min(hn::Max(position, zero), extent));
-  const MF there = wrap == TextureWrap::black ? inside : hn::Eq(zero, zero);
-  return {hn::Min(index, last), there};
+HWY_INLINE VI within(VF position, uint32_t size) {
+  const VF bounded = hn::Min(hn::Max(position, hn::Zero(FloatTag())), splat(static_cast<float>(size)));
+  return hn::Min(hn::ConvertTo(IntTag(), bounded), hn::Set(IntTag(), static_cast<int32_t>(size) - 1));
+}
+HWY_INLINE TexelIndex wrapped(VF x, VF y, const TextureImage& image, TextureWrap wrap) {
+  const VF width = splat(static_cast<float>(image.width)), height = splat(static_cast<float>(image.height));
+  const VF zero = hn::Zero(FloatTag());
+  const auto is_out = [&](VF position, VF size) { return hn::Or(hn::Lt(position, zero), hn::Le(size, position)); };
+  const auto repeated = [](VF position, VF size) {
+    return hn::NegMulAdd(hn::Floor(hn::Div(position, size)), size, position);
+  };
+  const MF out_x = is_out(x, width), out_y = is_out(y, height);
+  MF inside = hn::Eq(zero, zero);
+  switch (wrap) {
+    case TextureWrap::repeat:
+      x = repeated(x, width);
+      y = repeated(y, height);
+      break;
+    case TextureWrap::octahedral: {
+      // Over an edge: to its other half, the texels next to it touching each other.
+      const VF last = hn::Sub(width, splat(1.0f)), last_row = hn::Sub(height, splat(1.0f));
+      const auto turned = [&](VF position, VF end) {
+        return hn::IfThenElse(hn::Lt(position, zero), hn::Sub(splat(-1.0f), position),
+                              hn::Sub(hn::MulAdd(end, splat(2.0f), splat(1.0f)), position));
+      };
+      const VF folded_x = hn::IfThenElse(out_x, turned(x, last), x),
+               folded_y = hn::IfThenElse(out_y, turned(y, last_row), y);
+      x = hn::IfThenElse(out_y, hn::Sub(last, folded_x), folded_x);
+      y = hn::IfThenElse(out_x, hn::Sub(last_row, folded_y), folded_y);
+      break;
+    }
+    case TextureWrap::black: inside = hn::Not(hn::Or(out_x, out_y)); break;
+    case TextureWrap::clamp: break;
+  }
+  return {within(x, image.width), within(y, image.height), inside};
 }
 
-// One texel of the four around the point, chosen in proportion to its share of the linear interpolation: right on
-// average, on each wavelength, at a fourth of the price.
-HWY_INLINE void image_value(const TextureSet& set, const TextureOp& op, const TexturePoint& point, uint32_t nth,
-                            VF out[4]) {
-  const TextureImage& image = set.images[op.image];
-  const VF u = hn::MulAdd(point.u, splat(op.mapping.u_scale), splat(op.mapping.u_offset));
-  const VF v = hn::MulAdd(point.v, splat(op.mapping.v_scale), splat(op.mapping.v_offset));
-  VF x = hn::Mul(u, splat(static_cast<float>(image.width)));
-  VF y = hn::Mul(hn::Sub(splat(1.0f), v), splat(static_cast<float>(image.height)));
-  if (op.nearest == 0) {
-    VF jitter_x, jitter_y;
-    sample_2d(point.key, splat_u(texture_image_dimension(point.depth, nth)), &jitter_x, &jitter_y);
-    x = hn::Add(x, hn::Sub(jitter_x, splat(0.5f)));
-    y = hn::Add(y, hn::Sub(jitter_y, splat(0.5f)));
-  }
-  const TexelIndex column = wrapped(hn::Floor(x), image.width, op.wrap);
-  const TexelIndex row = wrapped(hn::Floor(y), image.height, op.wrap);
-  const VI texel = hn::Add(hn::Mul(row.index, hn::Set(IntTag(), static_cast<int32_t>(image.width))), column.index);
-  const VI at = hn::ShiftLeft<2>(hn::Add(texel, hn::Set(IntTag(), static_cast<int32_t>(image.first_texel))));
+HWY_INLINE void look_up(const TextureSet& set, const TextureImage& image, const TexelIndex& texel,
+                        const TexturePoint& point, VF out[4]) {
+  const VI nth = hn::Add(hn::Mul(texel.row, hn::Set(IntTag(), static_cast<int32_t>(image.width))), texel.column);
+  const VI at = hn::ShiftLeft<2>(hn::Add(nth, hn::Set(IntTag(), static_cast<int32_t>(image.first_texel))));
   const float* texels = set.texels.data();
   if (set.has_coefficients) {
     for (int j = 0; j < 4; ++j) out[j] = gather(texels, hn::Add(at, channel_of(point.lambda_nm[j])));
@@ -64,19 +68,49 @@ HWY_INLINE void image_value(const TextureSet& set, const TextureOp& op, const Te
     const VF scale = gather(texels + 3, at);
     for (int j = 0; j < 4; ++j) out[j] = hn::Mul(scale, sigmoid_polynomial(c0, c1, c2, point.lambda_nm[j]));
   }
-  const VF factor = hn::IfThenElseZero(hn::And(column.inside, row.inside), splat(op.number));
+}
+
+// One texel of the four around the point, chosen in proportion to its share of the linear interpolation: right on
+// average, on each wavelength, at a fourth of the price.
+HWY_INLINE void image_value(const TextureSet& set, const TextureOp& op, const TexturePoint& point, uint32_t nth,
+                            VF out[4]) {
+  const TextureImage& image = set.images[op.image];
+  const Vec3 at = map_point(op.mapping, point);
+  VF x = hn::Mul(at.x, splat(static_cast<float>(image.width)));
+  VF y = hn::Mul(hn::Sub(splat(1.0f), at.y), splat(static_cast<float>(image.height)));
+  if (op.nearest == 0) {
+    VF jitter_x, jitter_y;
+    sample_2d(point.key, splat_u(texture_image_dimension(point.depth, nth)), &jitter_x, &jitter_y);
+    x = hn::Add(x, hn::Sub(jitter_x, splat(0.5f)));
+    y = hn::Add(y, hn::Sub(jitter_y, splat(0.5f)));
+  }
+  const TexelIndex texel = wrapped(hn::Floor(x), hn::Floor(y), image, op.wrap);
+  look_up(set, image, texel, point, out);
+  const VF factor = hn::IfThenElseZero(texel.inside, splat(op.number));
   for (int j = 0; j < 4; ++j) {
     const VF value = hn::Mul(factor, out[j]);
     out[j] = op.invert != 0 ? hn::Max(hn::Sub(splat(1.0f), value), hn::Zero(FloatTag())) : value;
   }
 }
 
-HWY_INLINE void checkerboard(const TextureOp& op, const TexturePoint& point, const VF a[4], const VF b[4], VF out[4]) {
-  const VF u = hn::Floor(hn::MulAdd(point.u, splat(op.mapping.u_scale), splat(op.mapping.u_offset)));
-  const VF v = hn::Floor(hn::MulAdd(point.v, splat(op.mapping.v_scale), splat(op.mapping.v_offset)));
-  const VF half = hn::Mul(hn::Add(u, v), splat(0.5f));
-  const MF even = hn::Eq(half, hn::Floor(half));
-  for (int j = 0; j < 4; ++j) out[j] = hn::IfThenElse(even, a[j], b[j]);
+// The row of marble's colours is an image of one row.
+HWY_INLINE void marble(const TextureSet& set, const TextureOp& op, const TexturePoint& point, VF out[4]) {
+  const TextureImage& row = set.images[op.image];
+  const VF x = hn::Mul(marble_phase(op, map_point(op.mapping, point)), splat(static_cast<float>(row.width)));
+  look_up(set, row, {within(x, row.width), hn::Zero(IntTag()), hn::Eq(x, x)}, point, out);
+}
+
+// The patterns that are plain numbers.
+HWY_INLINE VF pattern(const TextureOp& op, const TexturePoint& point) {
+  if (op.code == TextureOpcode::facing) return hn::Abs(dot(point.normal, splat_vec3(op.axis_direction)));
+  const Vec3 p = map_point(op.mapping, point);
+  switch (op.code) {
+    case TextureOpcode::coordinate: return op.axis == 0 ? p.x : op.axis == 1 ? p.y : p.z;
+    case TextureOpcode::dots: return dots(p);
+    case TextureOpcode::fbm: return fbm(p, op.roughness, op.octaves);
+    case TextureOpcode::wrinkled: return turbulence(p, op.roughness, op.octaves);
+    default: return windy(p);
+  }
 }
 
 // The program's value at the point: operands are taken from the top of a stack, which holds four wavelengths a row.
@@ -84,6 +118,7 @@ HWY_INLINE void run_program(const World& world, const TextureProgram& program, c
   const TextureSet& set = world.textures;
   VF stack[deepest_texture_stack][4];
   uint32_t top = 0;  // rows in use
+  MF is_a;
   for (uint32_t i = program.begin; i < program.end; ++i) {
     const TextureOp& op = set.ops[i];
     switch (op.code) {
@@ -107,7 +142,19 @@ HWY_INLINE void run_program(const World& world, const TextureProgram& program, c
         break;
       case TextureOpcode::checkerboard:
         --top;
-        checkerboard(op, point, stack[top - 1], stack[top], stack[top - 1]);
+        is_a = hn::Gt(checkerboard(map_point(op.mapping, point)), hn::Zero(FloatTag()));
+        for (int j = 0; j < 4; ++j) stack[top - 1][j] = hn::IfThenElse(is_a, stack[top - 1][j], stack[top][j]);
+        break;
+      case TextureOpcode::marble: marble(set, op, point, stack[top++]); break;
+      case TextureOpcode::coordinate:
+      case TextureOpcode::facing:
+      case TextureOpcode::dots:
+      case TextureOpcode::fbm:
+      case TextureOpcode::wrinkled:
+      case TextureOpcode::windy:
+        stack[top][0] = pattern(op, point);
+        for (int j = 1; j < 4; ++j) stack[top][j] = stack[top][0];
+        ++top;
         break;
     }
   }
@@ -126,6 +173,8 @@ void run_lanes(const World& world, uint32_t depth, uint32_t program, const uint3
     TexturePoint point;
     point.u = gather(shade.uv[0], lane);
     point.v = gather(shade.uv[1], lane);
+    point.position = gather(shade.position, lane);
+    point.normal = gather(shade.normal, lane);
     for (size_t j = 0; j < 4; ++j) point.lambda_nm[j] = gather(shade.lambda_nm[j], lane);
     point.key = {gather(shade.pixel_seed, lane), gather(shade.index, lane)};
     point.depth = depth;
