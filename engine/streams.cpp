@@ -24,7 +24,8 @@ void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
   for (auto* columns :
        {&s.wo, &s.position, &s.normal, &s.shading_normal, &s.tangent, &s.light_direction, &s.next_direction})
     take_all(arena, rows, *columns);
-  for (auto* columns : {&s.lambda_nm, &s.throughput, &s.reflectance, &s.light_radiance, &s.next_weight})
+  for (auto* columns :
+       {&s.lambda_nm, &s.throughput, &s.reflectance, &s.transmittance, &s.light_radiance, &s.next_weight})
     take_all(arena, rows, *columns);
   take_all(arena, rows, s.uv);
   for (float** column : {&s.distance, &s.offset, &s.pdf_direction, &s.eta_scale, &s.light_distance, &s.light_pdf,
@@ -36,7 +37,7 @@ void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
   take_all(arena, rows, s.next_media);
 }
 
-constexpr size_t columns_in_all = 2 * 21 + 3 + (7 * 3 + 5 * 4 + 2 + 8 + 5 + 4) + (6 + 1 + 4 + 1) + (12 + 2) + 1;
+constexpr size_t columns_in_all = 2 * 21 + 4 + (7 * 3 + 6 * 4 + 2 + 8 + 5 + 4) + (6 + 1 + 4 + 1) + (12 + 2) + 1;
 constexpr size_t column_bytes = (sorted_capacity + column_lanes) * sizeof(float) + 2 * column_alignment;
 
 }  // namespace
@@ -46,7 +47,7 @@ Batch::Batch() : arena(columns_in_all * column_bytes) {
   const size_t rows = sorted_capacity + column_lanes;
   take_paths(arena, rows, paths);
   take_paths(arena, rows, next);
-  hits = {arena.take<uint32_t>(rows), arena.take<uint32_t>(rows), arena.take<float>(rows)};
+  hits = {arena.take<uint32_t>(rows), arena.take<uint32_t>(rows), arena.take<float>(rows), arena.take<uint32_t>(rows)};
   take_shade(arena, rows, shade);
   take_all(arena, rows, shadow.origin);
   take_all(arena, rows, shadow.direction);

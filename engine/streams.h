@@ -2,7 +2,7 @@
 // columns together stay within a core's L2 cache. Nothing here outlives a batch, except the slots, which live
 // until the batch is accumulated.
 //
-// Per path: PathStream 88 bytes, twice (this bounce's and the next one's rays); HitStream 12; ShadeStream 240;
+// Per path: PathStream 88 bytes, twice (this bounce's and the next one's rays); HitStream 16; ShadeStream 256;
 // ShadowStream 48; Slots 56.
 #pragma once
 #include <array>
@@ -19,6 +19,7 @@ inline constexpr uint32_t dead_lane = 0xffffffffu;
 // What a hit's lanes are sorted by: each kind has its own kernel over all its lanes. The last two end a path.
 enum class ShadeKind : uint32_t {
   diffuse,
+  diffuse_transmission,
   rough,
   smooth_coated,
   rough_coated,
@@ -30,12 +31,14 @@ enum class ShadeKind : uint32_t {
   absorber,
   miss
 };
-inline constexpr uint32_t shade_kind_count = 11;
+inline constexpr uint32_t shade_kind_count = 12;
+// Of objects of several materials: the kind is chosen at every hit, by `sort`.
+inline constexpr uint32_t mixed_kind = shade_kind_count;
 // Rough kinds are lit by light samples, smooth kinds only by what lies in the few directions they answer to. A smooth
 // coat does both: its body is rough, its surface mirrors.
-inline constexpr ShadeKind rough_kinds[] = {ShadeKind::diffuse,         ShadeKind::rough,
-                                            ShadeKind::smooth_coated,   ShadeKind::rough_coated,
-                                            ShadeKind::rough_conductor, ShadeKind::rough_dielectric};
+inline constexpr ShadeKind rough_kinds[] = {
+    ShadeKind::diffuse,      ShadeKind::diffuse_transmission, ShadeKind::rough,           ShadeKind::smooth_coated,
+    ShadeKind::rough_coated, ShadeKind::rough_conductor,      ShadeKind::rough_dielectric};
 inline constexpr ShadeKind smooth_kinds[] = {ShadeKind::smooth_conductor, ShadeKind::dielectric,
                                              ShadeKind::thin_dielectric};
 
@@ -107,6 +110,7 @@ struct HitStream {
   uint32_t* object;     // row of World::objects; no_index: the ray left the scene
   uint32_t* primitive;  // triangle within the object
   float* distance;      // metres; exact for quadrics, Embree's (to be computed again) for triangles
+  uint32_t* material;   // row in the table of the kind. Writer: sort
 };
 
 // Vertices sorted by kind, one lane each; a dead lane has slot == dead_lane and throughput 0.
@@ -129,7 +133,7 @@ struct ShadeStream {
   Columns<uint32_t, 2> media;  // of the ray that came, where `carries_media`; corrected by `media`
   bool carries_media = false;
   // Writer: textures, in lanes whose material has one.
-  Columns<float, 4> reflectance;
+  Columns<float, 4> reflectance, transmittance;
   // Writer: light_sample. Lanes without a light sample have radiance 0.
   Columns<float, 3> light_direction;  // unit, from the vertex
   Columns<float, 4> light_radiance;   // already divided by the pdf

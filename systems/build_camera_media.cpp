@@ -55,7 +55,7 @@ void advance(const World& world, Batch& batch, std::vector<Media>& entered, Medi
   double seconds = 0;
   intersect_bounce(world, batch.paths, batch.hits, &seconds);
   ShadeStream& shade = batch.shade;
-  sort_hits(world, batch.paths.size, batch.hits, batch.order, shade.groups);
+  sort_hits(world, 0, batch.paths, batch.hits, batch.order, shade.groups);
   shade.size = shade.groups.back().padded_end();
   surface(world, batch.paths, batch.hits, batch.order, shade);
   batch.next.size = 0;

@@ -19,6 +19,15 @@ MaterialRow add_diffuse(const Material& material, World& world) {
   return {ShadeKind::diffuse, static_cast<uint32_t>(world.diffuse.reflectance.size() - 1)};
 }
 
+MaterialRow add_diffuse_transmission(const Material& material, World& world) {
+  DiffuseTransmissionColumns& table = world.diffuse_transmission;
+  table.reflectance.push_back(material.reflectance);
+  table.transmittance.push_back(material.transmittance);
+  table.reflectance_texture.push_back(material.reflectance_texture);
+  table.transmittance_texture.push_back(material.transmittance_texture);
+  return {ShadeKind::diffuse_transmission, static_cast<uint32_t>(table.reflectance.size() - 1)};
+}
+
 // What it reflects of light from everywhere, seen along the normal: the integral of f_cos over the hemisphere.
 double rough_albedo(const Material& material, double kd, double ks) {
   if (material.normalized != 0) return kd + ks;
@@ -177,11 +186,15 @@ void check_optics(const Scene& scene, Entity entity, const Material& material, D
 MaterialRow add_material(const Material& material, World& world) {
   switch (material.kind) {
     case MaterialKind::diffuse: return add_diffuse(material, world);
+    case MaterialKind::diffuse_transmission: return add_diffuse_transmission(material, world);
     case MaterialKind::conductor: return add_conductor(material, world);
     case MaterialKind::rough: return add_rough(material, world);
-    case MaterialKind::coated: return add_coated(material, world);
+    case MaterialKind::coated:
+    case MaterialKind::layered: return add_coated(material, world);
     case MaterialKind::smooth: return add_smooth(material, world);
-    case MaterialKind::dielectric: break;
+    case MaterialKind::dielectric:
+    case MaterialKind::mix:
+    case MaterialKind::hair: break;
   }
   return add_dielectric(material, world);
 }
@@ -200,8 +213,9 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
     if (material.kind == MaterialKind::conductor || material.kind == MaterialKind::dielectric ||
         material.kind == MaterialKind::smooth)
       check_optics(scene, entity, material, diagnostics);
-    if (material.kind == MaterialKind::coated && !check_coated(scene, entity, material, diagnostics)) return;
-    own[entity.index] = add_material(material, world);
+    const bool is_coated = material.kind == MaterialKind::coated || material.kind == MaterialKind::layered;
+    if (is_coated && !check_coated(scene, entity, material, diagnostics)) return;
+    if (material.kind != MaterialKind::mix) own[entity.index] = add_material(material, world);
   });
   if (world.media.eta.size() > largest_medium + 1)
     diagnostics.error({}, fmt::format("the scene has {} media that paths follow; at most {} are possible",
@@ -209,6 +223,7 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
   Material grey;
   grey.reflectance = world.spectra.add_constant(0.5).id;
   std::optional<MaterialRow> fallback;
+  add_mixes(scene, own, world, diagnostics);
   registry.each<Geometry>([&](Entity entity, uint32_t) {
     const Entity slot = registry.get<MaterialSlot>(entity).material;
     const Entity source = registry.has<Material>(slot) ? slot : entity;

@@ -18,10 +18,15 @@ enum BounceDimension : uint32_t {
   direction_dimension,     // 2D: where in the lobe
   roulette_dimension,      // 1D
   texture_dimension,       // 2D, of the first image of a texture; others have dimensions of their own
+  mix_dimension = 7,       // 1D: which of two materials; mixes within mixes have dimensions of their own
 };
 
 constexpr uint32_t bounce_dimension(uint32_t depth, BounceDimension dimension) {
   return first_bounce_dimension + depth * dimensions_per_bounce + dimension;
+}
+
+constexpr uint32_t nested_mix_dimension(uint32_t depth, uint32_t level) {
+  return bounce_dimension(depth, mix_dimension) + level * 0x10000;
 }
 
 // Every image that a texture looks up has a point of its own: products of two would be biased by a common one.

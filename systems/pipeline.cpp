@@ -42,7 +42,7 @@ void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, C
   }
   clock.charge(SystemId::intersect);
   ShadeStream& shade = batch.shade;
-  sort_hits(world, paths.size, batch.hits, batch.order, shade.groups);
+  sort_hits(world, depth, paths, batch.hits, batch.order, shade.groups);
   shade.size = shade.groups.back().padded_end();
   count_lanes(shade, paths.size, counters);
   clock.charge(SystemId::sort);
@@ -144,6 +144,7 @@ void trace_batch(const World& world, std::span<const RayPacket> packets, const T
 
 void shade_rough_kinds(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
   shade_diffuse(world, work, shade, shadow);
+  shade_diffuse_transmission(world, work, shade, shadow);
   shade_rough(world, work, shade, shadow);
   shade_smooth_coated(world, work, shade, shadow);
   shade_rough_coated(world, work, shade, shadow);

@@ -163,15 +163,20 @@ HWY_INLINE VI material_row(const ShadeStream& shade, size_t i) {
   return as_index(hn::IfThenElseZero(live, load(shade.material, i)));
 }
 
-// The reflectance of each lane's material: of spectrum `ids[row]`, or what `textures` made of program `programs[row]`.
+// The reflectance of each lane's material: of spectrum `ids[row]`, or what `textures` made of program `programs[row]`
+// and left in `made`.
 HWY_INLINE void lane_reflectance(const World& world, const Column<uint32_t>& ids, const Column<uint32_t>& programs,
-                                 VI row, const ShadeStream& shade, size_t i, VF out[4]) {
+                                 const Columns<float, 4>& made, VI row, const ShadeStream& shade, size_t i, VF out[4]) {
   VF lambda_nm[4];
   load(shade.lambda_nm, i, lambda_nm);
   eval_spectrum4(world.spectra.view(), gather(ids.data(), row), lambda_nm, out);
   if (!world.has_textures()) return;
   const MF textured = float_mask(hn::Ne(gather(programs.data(), row), splat_u(no_index)));
-  for (size_t j = 0; j < 4; ++j) out[j] = hn::IfThenElse(textured, load(shade.reflectance[j], i), out[j]);
+  for (size_t j = 0; j < 4; ++j) out[j] = hn::IfThenElse(textured, load(made[j], i), out[j]);
+}
+HWY_INLINE void lane_reflectance(const World& world, const Column<uint32_t>& ids, const Column<uint32_t>& programs,
+                                 VI row, const ShadeStream& shade, size_t i, VF out[4]) {
+  lane_reflectance(world, ids, programs, shade.reflectance, row, shade, i, out);
 }
 
 }  // namespace metamer::HWY_NAMESPACE

@@ -250,7 +250,7 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     store(s.offset, shade.offset, i);
     const Vec3 travelled = s.position - origin;
     store(hn::Sqrt(dot(travelled, travelled)), shade.distance, i);
-    store(gather(world.objects.material.data(), object), shade.material, i);
+    store(gather(hits.material, path), shade.material, i);
     const VU first_light = gather(world.objects.first_light.data(), object);
     const auto emits = hn::And(live_u, hn::Ne(first_light, splat_u(no_index)));
     const VU light = hn::Add(first_light, hn::IfThenZeroElse(uint_mask(quadric), primitive));

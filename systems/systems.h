@@ -52,8 +52,10 @@ void camera_rays(const World& world, std::span<const RayPacket> packets, const T
 void intersect_camera(const World& world, const PathStream& paths, HitStream& hits, double* embree_seconds);
 void intersect_bounce(const World& world, const PathStream& paths, HitStream& hits, double* embree_seconds);
 
-// Sorts the hits by kind: order[lane] is the path, dead_lane in the padding between groups.
-void sort_hits(const World& world, uint32_t size, const HitStream& hits, uint32_t* order, Groups& groups);
+// Chooses the material of hits on mixed ones and sorts by kind: order[lane] is the path, dead_lane in the padding
+// between groups. Writes the hits' material.
+void sort_hits(const World& world, uint32_t depth, const PathStream& paths, HitStream& hits, uint32_t* order,
+               Groups& groups);
 
 // Position, normals and how far new rays must keep off the surface; carries the paths' columns along in sorted order.
 void surface(const World& world, const PathStream& paths, const HitStream& hits, const uint32_t* order,
@@ -83,6 +85,7 @@ struct ShadeWork {
   bool draw_mirror = true;  // the next direction may be a smooth coat's mirror image; else it comes from the body alone
 };
 void shade_diffuse(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
+void shade_diffuse_transmission(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_smooth_coated(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough_coated(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);

@@ -164,7 +164,7 @@ HWY_INLINE void run_program(const World& world, const TextureProgram& program, c
 // Lanes lanes[begin, end), all of one program. The last vector is filled up with its last lane, whose value is written
 // more than once, the same each time.
 void run_lanes(const World& world, uint32_t depth, uint32_t program, const uint32_t* lanes, uint32_t begin,
-               uint32_t end, ShadeStream& shade) {
+               uint32_t end, ShadeStream& shade, const Columns<float, 4>& out) {
   const uint32_t step = static_cast<uint32_t>(lane_count());
   HWY_ALIGN uint32_t rows[hn::MaxLanes(UintTag())];
   for (uint32_t i = begin; i < end; i += step) {
@@ -182,7 +182,7 @@ void run_lanes(const World& world, uint32_t depth, uint32_t program, const uint3
     run_program(world, world.textures.programs[program], point, value);
     for (size_t j = 0; j < 4; ++j) {
       const VF bounded = hn::Min(hn::Max(value[j], hn::Zero(FloatTag())), splat(1.0f));
-      hn::ScatterIndex(bounded, FloatTag(), shade.reflectance[j], lane);
+      hn::ScatterIndex(bounded, FloatTag(), out[j], lane);
     }
   }
 }
@@ -234,17 +234,24 @@ HWY_EXPORT(run_lanes);
 
 void textures(const World& world, uint32_t depth, ShadeStream& shade) {
   if (!world.has_textures()) return;
-  TexturedLanes lanes, spare;
-  collect(shade, ShadeKind::diffuse, world.diffuse.texture, lanes);
-  collect(shade, ShadeKind::smooth_coated, world.smooth_coated.texture, lanes);
-  collect(shade, ShadeKind::rough_coated, world.rough_coated.texture, lanes);
-  sort_by_program(world.textures.programs.size(), lanes, spare);
-  for (uint32_t begin = 0; begin < lanes.count;) {
-    uint32_t end = begin + 1;
-    while (end < lanes.count && lanes.program[end] == lanes.program[begin]) ++end;
-    HWY_DYNAMIC_DISPATCH(run_lanes)(world, depth, lanes.program[begin], lanes.lane, begin, end, shade);
-    begin = end;
-  }
+  const auto run = [&](TexturedLanes& lanes, const Columns<float, 4>& out) {
+    TexturedLanes spare;
+    sort_by_program(world.textures.programs.size(), lanes, spare);
+    for (uint32_t begin = 0; begin < lanes.count;) {
+      uint32_t end = begin + 1;
+      while (end < lanes.count && lanes.program[end] == lanes.program[begin]) ++end;
+      HWY_DYNAMIC_DISPATCH(run_lanes)(world, depth, lanes.program[begin], lanes.lane, begin, end, shade, out);
+      begin = end;
+    }
+  };
+  TexturedLanes reflectances, transmittances;
+  collect(shade, ShadeKind::diffuse, world.diffuse.texture, reflectances);
+  collect(shade, ShadeKind::diffuse_transmission, world.diffuse_transmission.reflectance_texture, reflectances);
+  collect(shade, ShadeKind::smooth_coated, world.smooth_coated.texture, reflectances);
+  collect(shade, ShadeKind::rough_coated, world.rough_coated.texture, reflectances);
+  run(reflectances, shade.reflectance);
+  collect(shade, ShadeKind::diffuse_transmission, world.diffuse_transmission.transmittance_texture, transmittances);
+  run(transmittances, shade.transmittance);
 }
 
 }  // namespace metamer

@@ -12,6 +12,7 @@
 #include "systems/bsdf/reference_coat.h"
 #include "tests/reference_lights.h"
 #include "tests/reference_media.h"
+#include "tests/reference_surfaces.h"
 
 namespace metamer {
 namespace {
@@ -83,36 +84,23 @@ struct Tracer {
 
   Spectrum4 scatter(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media,
                     const Spectrum4& lambda_nm, bool together, uint32_t events) {
-    const auto kind = static_cast<ShadeKind>(world.objects.shade_kind[hit.object]);
-    const uint32_t row = world.objects.material[hit.object];
+    const auto [kind, row] = reference_material(world, hit.object, [&] { return random(); });
     const LocalFrame frame = frame_of(hit, direction);
     const Direction wo = frame.in(-direction);
     if (kind == ShadeKind::absorber) return {};
     if (kind == ShadeKind::dielectric || kind == ShadeKind::rough_dielectric)
-      return enter(hit, direction, media, lambda_nm, together, events);
+      return enter({kind, row}, hit, direction, media, lambda_nm, together, events);
     if (kind == ShadeKind::thin_dielectric) {
       const reference::ThinOptics optics = thin_optics(row, media, lambda_nm);
       return branch(
           hit, frame, media, [&](double u) { return reference::sample_thin(wo, optics, u); }, lambda_nm, together,
           events);
     }
-    if (kind == ShadeKind::diffuse) {
-      const Spectrum4 albedo = reference_spectrum(world, world.diffuse.reflectance[row], lambda_nm);
-      const Spectrum4 lit = direct(hit, frame, media, lambda_nm,
-                                   [&](const Direction& wi) { return reference::eval_diffuse(wo, albedo, wi).f_cos; });
-      const double u = random(), v = random();
-      return plus(lit,
-                  go_on(hit, frame, media, reference::sample_diffuse(wo, albedo, u, v), lambda_nm, together, events));
-    }
-    if (kind == ShadeKind::rough) {
-      const reference::RoughOptics optics{reference_spectrum(world, world.rough.kd[row], lambda_nm),
-                                          reference_spectrum(world, world.rough.ks[row], lambda_nm),
-                                          world.rough.shininess[row], world.rough.normalized[row] != 0};
-      const Spectrum4 lit = direct(hit, frame, media, lambda_nm,
-                                   [&](const Direction& wi) { return reference::eval_rough(wo, optics, wi).f_cos; });
+    if (const auto surface = reference_surface(world, kind, row, wo, lambda_nm)) {
+      const Spectrum4 lit =
+          direct(hit, frame, media, lambda_nm, [&](const Direction& wi) { return surface->eval(wi).f_cos; });
       const double choice = random(), u = random(), v = random();
-      return plus(lit, go_on(hit, frame, media, reference::sample_rough(wo, optics, choice, u, v), lambda_nm, together,
-                             events));
+      return plus(lit, go_on(hit, frame, media, surface->sample(choice, u, v), lambda_nm, together, events));
     }
     if (kind == ShadeKind::smooth_coated || kind == ShadeKind::rough_coated)
       return coated(hit, frame, media, wo, coat(kind, row, lambda_nm), lambda_nm, together, events);
@@ -156,10 +144,10 @@ struct Tracer {
   }
 
   // A boundary that light crosses, smooth or rough.
-  Spectrum4 enter(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media,
-                  const Spectrum4& lambda_nm, bool together, uint32_t events) {
+  Spectrum4 enter(const ReferenceMaterial& material, const ReferenceHit& hit, const Vector& direction,
+                  const ReferenceMedia& media, const Spectrum4& lambda_nm, bool together, uint32_t events) {
     const DielectricColumns& table = world.dielectric;
-    const uint32_t row = world.objects.material[hit.object], medium = table.medium[row];
+    const uint32_t row = material.row, medium = table.medium[row];
     const ReferenceMedia behind = crossed(world, media, hit, direction);
     const uint32_t before = fills(world, media), after = fills(world, behind);
     if (medium != 0 && before == after)  // it fills the space on neither side: nothing happens
@@ -175,7 +163,7 @@ struct Tracer {
       optics.opaque[j] = world.spectra.value(table.kappa[row], lambda_nm[j]) >= double{refracting_kappa};
     const LocalFrame frame = frame_of(hit, direction);
     const Direction wo = frame.in(-direction);
-    if (static_cast<ShadeKind>(world.objects.shade_kind[hit.object]) == ShadeKind::dielectric)
+    if (material.kind == ShadeKind::dielectric)
       return branch(
           hit, frame, media, [&](double u) { return reference::sample_dielectric(wo, optics, u); }, lambda_nm, together,
           events);
@@ -213,11 +201,14 @@ struct Tracer {
     const CoatedColumns& table = kind == ShadeKind::smooth_coated ? world.smooth_coated : world.rough_coated;
     return {reference_spectrum(world, table.reflectance[row], lambda_nm),
             reference_spectrum(world, table.eta[row], lambda_nm),
-            double{table.alpha[row]},
+            double{table.alpha_x[row]},
             table.schlick[row] != 0,
             table.albedos.data(),
             {table.first_row[row], table.row_stride[row], table.last_pair[row], table.eta_least[row],
-             table.rows_per_eta[row]}};
+             table.rows_per_eta[row]},
+            double{table.alpha_y[row]},
+            double{table.thickness[row]},
+            double{table.hits[row]}};
   }
 
   // Each wavelength goes its own way from here on.

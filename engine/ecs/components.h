@@ -43,7 +43,18 @@ struct Geometry {
                       &Geometry::width, &Geometry::depth, &Geometry::flip_normal);
 };
 
-enum class MaterialKind : uint32_t { diffuse, conductor, dielectric, rough, coated, smooth };
+enum class MaterialKind : uint32_t {
+  diffuse,
+  conductor,
+  dielectric,
+  rough,
+  coated,
+  smooth,
+  layered,
+  diffuse_transmission,
+  mix,
+  hair
+};
 enum class FresnelModel : uint32_t { exact, schlick };
 
 inline constexpr uint32_t largest_priority = 255;
@@ -56,6 +67,28 @@ inline constexpr uint32_t largest_priority = 255;
 // `thickness` whose two faces are one surface; no inside. rough: diffuse `kd` plus Phong-Blinn `ks`, `shininess` (see
 // systems/bsdf/rough-inl.h); as taught, both in sr^-1 and without a bound, or `normalized`, both albedos.
 // coated: diffuse `reflectance` under a clear coat of index `eta` and one GGX width, alpha_x = alpha_y.
+// layered: pbrt's coat (systems/bsdf/coat_layer.h): a surface of index `eta` and GGX roughness over a `layer` and a
+// `base`. diffuse_transmission: `reflectance` and `transmittance`, both lambertian. mix: of two other entities'
+// materials. hair: `eta` and what `hair` says.
+enum class LayerBase : uint32_t { diffuse, conductor };
+struct Layer {
+  LayerBase base = LayerBase::diffuse;       // diffuse: the material's `reflectance`; conductor:
+  SpectrumId base_eta = 0, base_kappa = 0;   // against vacuum
+  float base_alpha_x = 0, base_alpha_y = 0;  // GGX
+  float thickness = 0.01f;  // optical: exp(-thickness) is left of light that crosses it along the normal
+  SpectrumId albedo = 0;    // of what scatters in it, 0 to 1
+  float asymmetry = 0;      // mean cosine of that scattering, -1 to 1
+  uint32_t max_depth = 10;  // scatterings inside of the coat, one at a boundary included
+  uint32_t walks = 1;       // averaged where the sum over ways through the layer is not closed
+};
+struct Mix {
+  Entity first, second;
+  float amount = 0.5f;  // of the second, 0 to 1
+};
+struct Hair {
+  SpectrumId sigma_a = 0;  // absorption, per radius of the fibre
+  float beta_m = 0.3f, beta_n = 0.3f, tilt_deg = 2;
+};
 struct Material {
   MaterialKind kind = MaterialKind::diffuse;
   SpectrumId reflectance = 0;
@@ -69,10 +102,16 @@ struct Material {
   uint32_t priority = 0;    // up to largest_priority; 0: not followed; the index is against whatever is around
   uint32_t thin = 0;
   float thickness = 0;  // metres; of a thin one with kappa
+  Layer layer;
+  SpectrumId transmittance = 0;
+  TextureId transmittance_texture = no_index;  // in place of `transmittance`
+  Mix mix;
+  Hair hair;
   static constexpr auto fields = std::make_tuple(
       &Material::kind, &Material::reflectance, &Material::reflectance_texture, &Material::eta, &Material::kappa,
       &Material::alpha_x, &Material::alpha_y, &Material::fresnel, &Material::kd, &Material::ks, &Material::shininess,
-      &Material::normalized, &Material::priority, &Material::thin, &Material::thickness);
+      &Material::normalized, &Material::priority, &Material::thin, &Material::thickness, &Material::layer,
+      &Material::transmittance, &Material::transmittance_texture, &Material::mix, &Material::hair);
 };
 
 // The entity whose Material covers this entity's surface. Without a slot (and without a Material of its own) a

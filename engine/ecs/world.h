@@ -14,8 +14,8 @@ struct ObjectColumns {
   Column<uint32_t> kind;            // ShapeKind: mesh, sphere or disk (rectangles are meshes here)
   Column<uint32_t> first_triangle;  // into World::triangle_vertices; unused by quadrics
   Column<uint32_t> triangle_count;
-  Column<uint32_t> shade_kind;   // ShadeKind
-  Column<uint32_t> material;     // row in the table of that kind
+  Column<uint32_t> shade_kind;   // ShadeKind, or mixed_kind
+  Column<uint32_t> material;     // row in the table of that kind, of mixed_kind in World::mixes
   Column<uint32_t> first_light;  // light row of the first triangle, or no_index
   Column<uint32_t> placement;    // row in World::placements; 0 is the identity: vertices are in world space
   Column<uint32_t> visibility;   // mask of rays that see it
@@ -36,6 +36,10 @@ struct DiffuseColumns {
   Column<uint32_t> reflectance;  // SpectrumId
   Column<uint32_t> texture;      // program of TextureSet in its place, or no_index
 };
+struct DiffuseTransmissionColumns {
+  Column<uint32_t> reflectance, transmittance;                  // SpectrumId
+  Column<uint32_t> reflectance_texture, transmittance_texture;  // programs of TextureSet in their place, or no_index
+};
 struct RoughColumns {
   Column<uint32_t> kd, ks;  // SpectrumId
   Column<float> shininess;
@@ -45,7 +49,8 @@ struct RoughColumns {
 struct CoatedColumns {
   Column<uint32_t> reflectance, eta;  // SpectrumId
   Column<uint32_t> texture;           // program of TextureSet in place of `reflectance`, or no_index
-  Column<float> alpha;
+  Column<float> alpha_x, alpha_y;
+  Column<float> thickness, hits;  // of the layer, optical; of the base, negative: without end
   Column<uint32_t> schlick;
   Column<uint32_t> first_row, row_stride, last_pair;  // of `albedos`
   Column<float> eta_least, rows_per_eta;
@@ -66,6 +71,11 @@ struct DielectricColumns {
   Column<float> alpha_x, alpha_y;  // rough ones
   Column<float> thickness;         // metres; thin ones
   Column<uint32_t> is_absolute;    // thin ones: eta is against vacuum
+};
+// Which of two materials a hit is of: the second with the chance `amount`. A kind may be mixed_kind again.
+struct MixRow {
+  uint32_t kind[2] = {}, row[2] = {};
+  float amount = 0;
 };
 // What paths remember being inside of. Row 0 is the vacuum, of priority 0; all others have 1 at least.
 struct MediumColumns {
@@ -157,10 +167,12 @@ struct World {
   Column<uint32_t> triangle_vertices;  // three per triangle
   Column<Placement> placements;
   DiffuseColumns diffuse;
+  DiffuseTransmissionColumns diffuse_transmission;
   RoughColumns rough;
   CoatedColumns smooth_coated, rough_coated;
   ConductorColumns conductor;
   DielectricColumns dielectric;
+  Column<MixRow> mixes;
   MediumColumns media;
   uint32_t camera_media[2] = {0, 0};  // the stack that paths start with
   Column<LightRow> lights;

@@ -173,11 +173,19 @@ void read_materials(SceneContext& context, const Json::Value& materials) {
     context.reader.expected(materials, "materials", "an object of named materials");
     return;
   }
+  // Names first, so that materials may be mixed of any others.
+  std::vector<Entity> entities;
   for (auto it = materials.begin(); it != materials.end(); ++it) {
-    if (is_repeated_key(it.name())) continue;
     const Entity entity = context.scene.registry.create();
+    entities.push_back(entity);
+    if (is_repeated_key(it.name())) continue;
     context.scene.registry.set(entity, Source{context.file, context.reader.document().at_key(*it).line});
     name_entity(context, entity, it.name(), *it, true);
+  }
+  size_t at = 0;
+  for (auto it = materials.begin(); it != materials.end(); ++it, ++at) {
+    if (is_repeated_key(it.name())) continue;
+    const Entity entity = entities[at];
     context.reader.set_subject(fmt::format("material '{}'", printable_text(it.name())));
     if (const auto material = read_material(context, *it)) context.scene.registry.set(entity, *material);
     context.reader.set_subject({});

@@ -18,6 +18,11 @@ constexpr KeySpec material_diffuse[] = {{"type", required}, {"reflectance", requ
 constexpr KeySpec material_rough[] = {{"type", required}, {"kd"}, {"ks"}, {"shininess"}, {"normalized"}};
 constexpr KeySpec material_coated[] = {{"type", required}, {"reflectance", required}, {"glass"}, {"eta"}, {"roughness"},
                                        {"fresnel"}};
+constexpr KeySpec material_layered[] = {{"type", required}, {"reflectance", required}, {"glass"},    {"eta"},
+                                        {"roughness"},      {"optical_thickness"},     {"max_depth"}};
+constexpr KeySpec material_diffuse_transmission[] = {
+    {"type", required}, {"reflectance", required}, {"transmittance", required}};
+constexpr KeySpec material_mix[] = {{"type", required}, {"first", required}, {"second", required}, {"amount"}};
 constexpr KeySpec material_conductor[] = {{"type", required}, {"metal"},     {"eta"},
                                           {"kappa"},          {"roughness"}, {"fresnel"}};
 constexpr KeySpec material_dielectric[] = {{"type", required}, {"glass"},    {"eta"},  {"kappa"},    {"roughness"},
@@ -62,6 +67,9 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"material.diffuse", material_diffuse},
                                 {"material.rough", material_rough},
                                 {"material.coated", material_coated},
+                                {"material.layered", material_layered},
+                                {"material.diffuse_transmission", material_diffuse_transmission},
+                                {"material.mix", material_mix},
                                 {"material.conductor", material_conductor},
                                 {"material.dielectric", material_dielectric},
                                 {"material.smooth", material_smooth},

@@ -55,17 +55,6 @@ void material(Reader& reader, std::string_view kind, Parameters& parameters) {
   reader.state.material = read_material(reader, kind, parameters, reader.scene.registry.create());
 }
 
-// Materials may be used before they are made; the entity is the same.
-NamedMaterial& named_material(Reader& reader, const std::string& name, Source source) {
-  const auto [entry, fresh] = reader.materials.try_emplace(name);
-  if (fresh) {
-    const Entity entity = reader.scene.registry.create();
-    reader.scene.registry.set(entity, Name{reader.scene.names.add(name)});
-    entry->second = {entity, source, false};
-  }
-  return entry->second;
-}
-
 void make_named_material(Reader& reader, std::string_view name, Parameters& parameters) {
   NamedMaterial& entry = named_material(reader, std::string(name), parameters.source());
   if (entry.defined) reader.messages.error(parameters.source(), fmt::format("material '{}' is made twice", name));

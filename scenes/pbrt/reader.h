@@ -137,6 +137,9 @@ std::optional<TextureId> read_texture_parameter(Reader& reader, Parameters& para
 // materials.cpp
 Entity read_material(Reader& reader, std::string_view kind, Parameters& parameters, Entity entity);
 
+// Materials may be used before they are made; the entity is the same (materials.cpp).
+NamedMaterial& named_material(Reader& reader, const std::string& name, Source source);
+
 // lights.cpp
 void read_light(Reader& reader, std::string_view kind, Parameters& parameters);
 // A light's scale in single precision; an error, and 0, if that overflows.

@@ -47,8 +47,8 @@ size_t bytes_of(const Columns&... columns) {
 }
 
 size_t coated_bytes(const CoatedColumns& c) {
-  return bytes_of(c.reflectance, c.eta, c.alpha, c.schlick, c.first_row, c.row_stride, c.last_pair, c.eta_least,
-                  c.rows_per_eta, c.albedos);
+  return bytes_of(c.reflectance, c.texture, c.eta, c.alpha_x, c.alpha_y, c.thickness, c.hits, c.schlick, c.first_row,
+                  c.row_stride, c.last_pair, c.eta_least, c.rows_per_eta, c.albedos);
 }
 
 }  // namespace

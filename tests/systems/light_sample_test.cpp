@@ -48,7 +48,7 @@ class Emission {
     }
     double seconds = 0;
     intersect_bounce(world_, paths, batch_.hits, &seconds);
-    sort_hits(world_, paths.size, batch_.hits, batch_.order, batch_.shade.groups);
+    sort_hits(world_, 0, paths, batch_.hits, batch_.order, batch_.shade.groups);
     batch_.shade.size = batch_.shade.groups.back().padded_end();
     surface(world_, paths, batch_.hits, batch_.order, batch_.shade);
     emission(world_, batch_.shade, batch_.slots);
