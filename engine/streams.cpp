@@ -29,7 +29,7 @@ void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
     take_all(arena, rows, *columns);
   take_all(arena, rows, s.uv);
   for (float** column : {&s.distance, &s.offset, &s.pdf_direction, &s.eta_scale, &s.light_distance, &s.light_pdf,
-                         &s.next_pdf, &s.next_eta_scale})
+                         &s.next_pdf, &s.next_eta_scale, &s.time})
     *column = arena.take<float>(rows);
   for (uint32_t** column : {&s.material, &s.light, &s.pixel_seed, &s.index, &s.slot})
     *column = arena.take<uint32_t>(rows);
@@ -37,7 +37,7 @@ void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
   take_all(arena, rows, s.next_media);
 }
 
-constexpr size_t columns_in_all = 2 * 21 + 4 + (7 * 3 + 6 * 4 + 2 + 8 + 5 + 4) + (6 + 1 + 4 + 1) + (12 + 2) + 1;
+constexpr size_t columns_in_all = 2 * 22 + 4 + (7 * 3 + 6 * 4 + 2 + 9 + 5 + 4) + (6 + 1 + 4 + 2) + (12 + 2) + 1;
 constexpr size_t column_bytes = (sorted_capacity + column_lanes) * sizeof(float) + 2 * column_alignment;
 
 }  // namespace
@@ -54,6 +54,7 @@ Batch::Batch() : arena(columns_in_all * column_bytes) {
   shadow.t_far = arena.take<float>(rows);
   take_all(arena, rows, shadow.contribution);
   shadow.slot = arena.take<uint32_t>(rows);
+  shadow.time = arena.take<float>(rows);
   take_all(arena, rows, slots.lambda_nm);
   take_all(arena, rows, slots.inv_pdf_nm);
   take_all(arena, rows, slots.radiance);

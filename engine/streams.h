@@ -2,8 +2,8 @@
 // columns together stay within a core's L2 cache. Nothing here outlives a batch, except the slots, which live
 // until the batch is accumulated.
 //
-// Per path: PathStream 88 bytes, twice (this bounce's and the next one's rays); HitStream 16; ShadeStream 256;
-// ShadowStream 48; Slots 56.
+// Per path: PathStream 92 bytes, twice (this bounce's and the next one's rays); HitStream 16; ShadeStream 260;
+// ShadowStream 52; Slots 56.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -85,6 +85,7 @@ struct PathStream {
   float* eta_scale;              // (n of the first medium / n here)^2 so far: roulette must not see radiance scaling
   uint32_t *pixel_seed, *index;  // the path's key into the low-discrepancy points
   uint32_t* slot;                // its row in Slots
+  float* time;                   // 0 to 1 while the shutter is open; only where World::has_motion
   Columns<uint32_t, 2> media;    // what the ray starts inside of (see MediumColumns); only where World::has_interiors
 };
 
@@ -99,6 +100,7 @@ void for_each_column(PathStream& s, const Visit& visit) {
   visit(s.pixel_seed);
   visit(s.index);
   visit(s.slot);
+  visit(s.time);
   for (uint32_t*& column : s.media) visit(column);
 }
 
@@ -132,6 +134,8 @@ struct ShadeStream {
   uint32_t *pixel_seed, *index, *slot;
   Columns<uint32_t, 2> media;  // of the ray that came, where `carries_media`; corrected by `media`
   bool carries_media = false;
+  float* time;  // of the path, where `carries_time`
+  bool carries_time = false;
   // Writer: textures, in lanes whose material has one.
   Columns<float, 4> reflectance, transmittance;
   // Writer: light_sample. Lanes without a light sample have radiance 0.
@@ -156,6 +160,7 @@ struct ShadowStream {
   float* t_far;
   Columns<float, 4> contribution;  // radiance at the camera if the light is seen
   uint32_t* slot;
+  float* time;  // where World::has_motion
 };
 
 // What a path, or one node of a ray tree, gathers, by its place in the batch.

@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 #include <limits>
 
+#include "systems/build_motion.h"
 #include "systems/freeze.h"
 #include "systems/light_rows.h"
 
@@ -64,6 +65,39 @@ bool is_within_reach(const glm::dmat4& to_world, double extent) {
 }
 
 constexpr float no_uv = std::numeric_limits<float>::quiet_NaN();
+// Where the object that is being added is as the shutter opens, and the keys of its motion, if it moves.
+struct Place {
+  glm::dmat4 to_world;
+  std::vector<glm::dmat4> keys;
+  bool moves() const { return !keys.empty(); }
+};
+
+// What emits light stands still: as the lights have been placed.
+Place place_of(Builder& b, Entity entity, const glm::dmat4& to_world) {
+  Place place{to_world, motion_keys(b.scene, entity, b.diagnostics)};
+  if (!place.moves()) return place;
+  if (b.scene.registry.has<Light>(entity)) {
+    b.diagnostics.warning(b.scene.location(entity),
+                          fmt::format("{} emits light and does not move: lights stand as at the start of their motion",
+                                      b.scene.describe(entity)));
+    return {to_world, {}};
+  }
+  place.to_world = place.keys.front();
+  return place;
+}
+
+void add_motion(World& world, const Place& place) {
+  world.objects.first_key.push_back(static_cast<uint32_t>(world.motion_keys.size()));
+  world.objects.key_count.push_back(static_cast<uint32_t>(place.keys.size()));
+  if (place.moves()) world.has_motion = true;
+  for (const glm::dmat4& matrix : place.keys) {
+    MotionKey key;
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 4; ++column)
+        key.to_world[row * 4 + column] = static_cast<float>(matrix[column][row]);
+    world.motion_keys.push_back(key);
+  }
+}
 
 void push_vector(Column<float>& column, const glm::dvec3& v) {
   for (int i = 0; i < 3; ++i) column.push_back(static_cast<float>(v[i]));
@@ -137,16 +171,18 @@ void spread_power_of(Builder& b, Entity entity) {
   }
 }
 
-void add_mesh_object(Builder& b, Entity entity, const Geometry& geometry, const Mesh& mesh,
-                     const glm::dmat4& to_world) {
+void add_mesh_object(Builder& b, Entity entity, const Geometry& geometry, const Mesh& mesh, const Place& place) {
+  const glm::dmat4& to_world = place.to_world;
   ObjectColumns& objects = b.world.objects;
   const bool emits = b.scene.registry.has<Light>(entity);
-  const bool shared =
-      geometry.kind == ShapeKind::mesh && b.mesh_users[geometry.mesh] > 1 && !emits && geometry.flip_normal == 0;
+  // Of a mesh used more than once, and of one that moves, the vertices stay in its own space.
+  const bool can_share = geometry.kind == ShapeKind::mesh && !emits && geometry.flip_normal == 0;
+  const bool shared = can_share && (b.mesh_users[geometry.mesh] > 1 || place.moves());
   uint32_t first = 0, placement = 0;
-  if (shared) {
-    uint32_t& known = b.shared_first[geometry.mesh];
-    if (known == no_index) known = add_triangles(b, mesh, glm::dmat4(1), false);
+  if (shared || place.moves()) {
+    uint32_t own = no_index;
+    uint32_t& known = shared ? b.shared_first[geometry.mesh] : own;
+    if (known == no_index) known = add_triangles(b, mesh, glm::dmat4(1), geometry.flip_normal != 0);
     first = known;
     placement = static_cast<uint32_t>(b.world.placements.size());
     Placement instance = make_placement(to_world, geometry);
@@ -218,19 +254,22 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
     objects.material.push_back(materials[entity.index].row);
     objects.first_light.push_back(no_index);
     objects.visibility.push_back(registry.get<Visibility>(entity).mask);
-    const glm::dmat4& matrix = to_world[entity.index];
     const double size = geometry.kind == ShapeKind::mesh ? b.mesh_extent[geometry.mesh] : extent(geometry, nullptr);
-    if (!is_within_reach(matrix, size))
+    const Place place = place_of(b, entity, to_world[entity.index]);
+    add_motion(world, place);
+    const bool reaches = std::all_of(place.keys.begin(), place.keys.end(),
+                                     [&](const glm::dmat4& key) { return is_within_reach(key, size); });
+    if (!reaches || !is_within_reach(place.to_world, size))
       diagnostics.error(scene.location(entity),
                         fmt::format("{} is too large, too small or too far away for single precision: shapes may reach "
                                     "1e18 m from the origin",
                                     scene.describe(entity)));
     if (geometry.kind == ShapeKind::mesh)
-      add_mesh_object(b, entity, geometry, scene.meshes[geometry.mesh], matrix);
+      add_mesh_object(b, entity, geometry, scene.meshes[geometry.mesh], place);
     else if (is_mesh)
-      add_mesh_object(b, entity, geometry, rectangle_mesh(geometry), matrix);
+      add_mesh_object(b, entity, geometry, rectangle_mesh(geometry), place);
     else
-      add_quadric_object(b, entity, geometry, matrix);
+      add_quadric_object(b, entity, geometry, place.to_world);
   });
   // Embree reads 16 bytes for the last vertex.
   for (int i = 0; i < 4; ++i) world.positions.push_back(0);

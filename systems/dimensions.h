@@ -7,6 +7,7 @@ namespace metamer {
 inline constexpr uint32_t film_dimension = 0;        // 2D: where in the pixel's filter
 inline constexpr uint32_t wavelength_dimension = 1;  // 2D: position within the strata, and their rotation
 inline constexpr uint32_t lens_dimension = 2;        // 2D
+inline constexpr uint32_t time_dimension = 3;        // 1D: when, while the shutter is open
 
 // At each vertex, from first_bounce_dimension + depth * dimensions_per_bounce on:
 inline constexpr uint32_t first_bounce_dimension = 4;

@@ -13,7 +13,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 // Rays go to Embree by the chunk, so that reading the clock costs nothing beside them.
 constexpr uint32_t chunk = 64;
 
-void start_ray(const PathStream& paths, uint32_t i, RTCRayHit& ray) {
+void start_ray(const World& world, const PathStream& paths, uint32_t i, RTCRayHit& ray) {
   ray.ray.org_x = paths.origin[0][i];
   ray.ray.org_y = paths.origin[1][i];
   ray.ray.org_z = paths.origin[2][i];
@@ -21,7 +21,7 @@ void start_ray(const PathStream& paths, uint32_t i, RTCRayHit& ray) {
   ray.ray.dir_x = paths.direction[0][i];
   ray.ray.dir_y = paths.direction[1][i];
   ray.ray.dir_z = paths.direction[2][i];
-  ray.ray.time = 0;
+  ray.ray.time = world.has_motion ? paths.time[i] : 0;
   ray.ray.tfar = std::numeric_limits<float>::infinity();
   ray.ray.mask = visible_to_bounces;
   ray.ray.flags = 0;
@@ -46,6 +46,7 @@ void intersect_camera(const World& world, const PathStream& paths, HitStream& hi
     std::memcpy(packet.ray.dir_x, paths.direction[0] + i, column);
     std::memcpy(packet.ray.dir_y, paths.direction[1] + i, column);
     std::memcpy(packet.ray.dir_z, paths.direction[2] + i, column);
+    if (world.has_motion) std::memcpy(packet.ray.time, paths.time + i, column);
     std::fill(std::begin(packet.ray.tfar), std::end(packet.ray.tfar), std::numeric_limits<float>::infinity());
     std::fill(std::begin(packet.ray.mask), std::end(packet.ray.mask), visible_to_camera);
     std::fill(std::begin(packet.hit.geomID), std::end(packet.hit.geomID), RTC_INVALID_GEOMETRY_ID);
@@ -67,7 +68,7 @@ void intersect_bounce(const World& world, const PathStream& paths, HitStream& hi
   RTCRayHit rays[chunk];
   for (uint32_t begin = 0; begin < paths.size; begin += chunk) {
     const uint32_t count = std::min(chunk, paths.size - begin);
-    for (uint32_t k = 0; k < count; ++k) start_ray(paths, begin + k, rays[k]);
+    for (uint32_t k = 0; k < count; ++k) start_ray(world, paths, begin + k, rays[k]);
     const Clock::time_point start = Clock::now();
     for (uint32_t k = 0; k < count; ++k) rtcIntersect1(world.accelerator->root, &context, &rays[k]);
     *embree_seconds += seconds_since(start);

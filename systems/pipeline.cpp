@@ -204,7 +204,9 @@ void Counters::add(const Counters& other) {
 
 void trace_tile(const World& world, const TileRect& tile, uint32_t sample_begin, uint32_t sample_end, Batch& batch,
                 TileFilm& film, Counters& counters) {
-  film.reset(tile.x0, tile.y0, tile.width(), tile.height(), sample_begin, sample_end, world.settings.band_count);
+  const TileRect rendered = rendered_pixels(world.settings);
+  film.reset(tile.x0 - rendered.x0, tile.y0 - rendered.y0, tile.width(), tile.height(), sample_begin, sample_end,
+             world.settings.band_count);
   constexpr uint32_t packets_per_batch = batch_capacity / column_lanes;
   std::array<RayPacket, packets_per_batch> packets;
   const uint32_t most = rays_per_batch(world) / column_lanes;

@@ -73,6 +73,7 @@ HWY_INLINE void append_weighted_shadow_rays(const ShadeStream& shade, size_t i, 
   append(counts, t_far, shadow.t_far, shadow.size);
   append(counts, contribution, shadow.contribution, shadow.size);
   append(counts, load(shade.slot, i), shadow.slot, shadow.size);
+  if (shade.carries_time) append(counts, load(shade.time, i), shadow.time, shadow.size);
   shadow.size += static_cast<uint32_t>(hn::CountTrue(FloatTag(), counts));
 }
 HWY_INLINE void append_shadow_rays(const ShadeStream& shade, size_t i, const VF f_cos[4], VF pdf_bsdf,
@@ -129,6 +130,7 @@ HWY_INLINE void append_ray(MF mask, const ShadeStream& shade, size_t i, const Ne
   append(mask, load(shade.pixel_seed, i), next.pixel_seed, at);
   append(mask, load(shade.index, i), next.index, at);
   append(mask, load(shade.slot, i), next.slot, at);
+  if (shade.carries_time) append(mask, load(shade.time, i), next.time, at);
   if (shade.carries_media)
     for (size_t k = 0; k < 2; ++k) append(mask, load(shade.next_media[k], i), next.media[k], at);
   next.size += static_cast<uint32_t>(hn::CountTrue(FloatTag(), mask));

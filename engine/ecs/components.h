@@ -21,6 +21,16 @@ struct Transform {
   static constexpr auto fields = std::make_tuple(&Transform::row0, &Transform::row1, &Transform::row2);
 };
 
+// The entity moves: its Transform holds at `start_time`, this one at `end_time` (seconds, start before end). In between
+// the translation, the rotation and what is left of the matrix go their ways one by one (systems/build_motion.h);
+// before and after it stands still.
+struct Motion {
+  glm::vec4 row0{1, 0, 0, 0}, row1{0, 1, 0, 0}, row2{0, 0, 1, 0};
+  float start_time = 0, end_time = 1;
+  static constexpr auto fields =
+      std::make_tuple(&Motion::row0, &Motion::row1, &Motion::row2, &Motion::start_time, &Motion::end_time);
+};
+
 struct Parent {
   Entity entity;
   static constexpr auto fields = std::make_tuple(&Parent::entity);
@@ -148,10 +158,14 @@ struct Light {
                                                  &Light::cone_deg, &Light::falloff_deg, &Light::angular_diameter_deg);
 };
 
-enum class CameraKind : uint32_t { perspective, orthographic };
+enum class CameraKind : uint32_t { perspective, orthographic, spherical };
+// How the sphere of directions becomes a rectangle or a square.
+enum class ImageMapping : uint32_t { latitude_longitude, equal_area };
 
 // Looks along its local +z, +y up, +x to the RIGHT of the picture (left-handed camera space, as pbrt's; the
-// transform to the right-handed world mirrors).
+// transform to the right-handed world mirrors). Spherical cameras see all directions (a, b, c) in their axes x, y, z,
+// by latitude and longitude: (sin t cos p, cos t, sin t sin p) at p = 2 pi u, t = pi v of the picture's u, v from its
+// upper left corner; or by equal areas, the same with y and z exchanged (see systems/environment-inl.h).
 struct Camera {
   CameraKind kind = CameraKind::perspective;
   float fov_deg = 45;                   // over the shorter side of the picture; perspective only
@@ -159,8 +173,10 @@ struct Camera {
   float lens_radius = 0;                // metres; 0 is a pinhole
   float focal_distance = 1;             // metres along +z
   glm::vec4 screen_window{0, 0, 0, 0};  // x_min x_max y_min y_max on the plane of unit half-height; all 0: default
-  static constexpr auto fields = std::make_tuple(&Camera::kind, &Camera::fov_deg, &Camera::screen_height,
-                                                 &Camera::lens_radius, &Camera::focal_distance, &Camera::screen_window);
+  ImageMapping mapping = ImageMapping::latitude_longitude;  // spherical only
+  static constexpr auto fields =
+      std::make_tuple(&Camera::kind, &Camera::fov_deg, &Camera::screen_height, &Camera::lens_radius,
+                      &Camera::focal_distance, &Camera::screen_window, &Camera::mapping);
 };
 
 struct Name {
@@ -188,7 +204,7 @@ struct Source {
   static constexpr auto fields = std::make_tuple(&Source::file, &Source::line);
 };
 
-using Registry = BasicRegistry<Transform, Parent, Geometry, Material, MaterialSlot, Light, Camera, Name, Visibility,
-                               MediumSlot, Source>;
+using Registry = BasicRegistry<Transform, Motion, Parent, Geometry, Material, MaterialSlot, Light, Camera, Name,
+                               Visibility, MediumSlot, Source>;
 
 }  // namespace metamer

@@ -19,6 +19,8 @@ struct ObjectColumns {
   Column<uint32_t> first_light;  // light row of the first triangle, or no_index
   Column<uint32_t> placement;    // row in World::placements; 0 is the identity: vertices are in world space
   Column<uint32_t> visibility;   // mask of rays that see it
+  Column<uint32_t> first_key;    // into World::motion_keys; unused by what stands still
+  Column<uint32_t> key_count;    // 0: it stands still; else 2 or more, evenly spaced over the time of the shutter
   size_t size() const { return kind.size(); }
 };
 
@@ -31,6 +33,13 @@ struct Placement {
   float padding[4] = {};
 };
 static_assert(sizeof(Placement) == 32 * sizeof(float));
+
+// Where a moving object is at one time: rows of an affine matrix. Between two keys matrices are interpolated linearly.
+struct MotionKey {
+  float to_world[12];  // row-major 3x4
+  float padding[4] = {};
+};
+static_assert(sizeof(MotionKey) == 16 * sizeof(float));
 
 struct DiffuseColumns {
   Column<uint32_t> reflectance;  // SpectrumId
@@ -142,14 +151,23 @@ struct Environment {
 };
 
 // A pixel coordinate (x, y), y down, is seen along direction = normalize(axis + x right + y down) from `origin`
-// (perspective), or along `axis` from origin + x right + y down (orthographic).
+// (perspective), or along `axis` from origin + x right + y down (orthographic). Spherical: right, axis, down are the
+// camera's x, y and z axes, and (x x_step, y y_step) a place in the unit square.
 struct CameraRow {
   CameraKind kind = CameraKind::perspective;
   float origin[3] = {}, axis[3] = {}, right[3] = {}, down[3] = {};
   float lens_x[3] = {}, lens_y[3] = {};  // world vectors of the lens radius
   float lens_radius = 0, focal_distance = 1;
   float forward[3] = {};  // unit depth along the camera's axis, for the plane of focus
+  ImageMapping mapping = ImageMapping::latitude_longitude;  // spherical only
+  float x_step = 0, y_step = 0;
 };
+// What of a CameraRow moves, in its order; interpolated linearly like MotionKey.
+struct CameraKey {
+  float origin[3] = {}, axis[3] = {}, right[3] = {}, down[3] = {}, lens_x[3] = {}, lens_y[3] = {}, forward[3] = {};
+  float padding[11] = {};
+};
+static_assert(sizeof(CameraKey) == 32 * sizeof(float));
 
 // How many of a path's four wavelengths carry light. In RGB mode they are the channels' three, see color_mode.h.
 inline uint32_t live_wavelengths(const RenderSettings& settings) {
@@ -166,6 +184,7 @@ struct World {
   Column<float> uvs;                   // two per vertex; NaN: (0, 0), (1, 0), (1, 1) on every triangle, as in pbrt
   Column<uint32_t> triangle_vertices;  // three per triangle
   Column<Placement> placements;
+  Column<MotionKey> motion_keys;
   DiffuseColumns diffuse;
   DiffuseTransmissionColumns diffuse_transmission;
   RoughColumns rough;
@@ -181,7 +200,8 @@ struct World {
   Column<uint32_t> summed_lights;  // rows of abstract lights that are summed one by one (local, recursive), not sampled
   Environment environment;
   TextureSet textures;
-  CameraRow camera;
+  CameraRow camera;               // as the shutter opens
+  Column<CameraKey> camera_keys;  // empty: the camera stands still
   SpectrumSet spectra;
   RenderSettings settings;
   PixelFilter filter;
@@ -190,6 +210,7 @@ struct World {
   bool needs_tangents = false;  // an anisotropic material is present
   bool has_instances = false;   // some triangles are in their object's space
   bool has_quadrics = false;
+  bool has_motion = false;     // some objects move: paths carry their time
   bool has_interiors = false;  // some material is followed: paths carry their media
   bool has_textures() const { return !textures.programs.empty(); }
   uint64_t zero_area_triangles = 0;

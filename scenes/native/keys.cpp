@@ -7,8 +7,9 @@ constexpr bool required = true;
 
 constexpr KeySpec scene[] = {{"$schema"}, {"metamer", required}, {"units"},  {"settings"},
                              {"spectra"}, {"materials"},         {"meshes"}, {"entities", required}};
-constexpr KeySpec settings[] = {{"size"},   {"samples"},  {"max_depth"},    {"seed"},     {"integrator"}, {"shadows"},
-                                {"filter"}, {"exposure"}, {"sensor_scale"}, {"spectral"}, {"color"}};
+constexpr KeySpec settings[] = {{"size"},    {"samples"}, {"max_depth"},    {"seed"},         {"integrator"},
+                                {"shadows"}, {"filter"},  {"exposure"},     {"sensor_scale"}, {"spectral"},
+                                {"color"},   {"crop"},    {"pixel_jitter"}, {"shutter"}};
 constexpr KeySpec filter_box[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_triangle[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_gaussian[] = {{"type", required}, {"radius"}, {"sigma"}};
@@ -31,7 +32,7 @@ constexpr KeySpec material_smooth[] = {{"type", required}, {"metal"},    {"glass
                                        {"fresnel"},        {"priority"}, {"thin"},  {"thickness"}};
 constexpr KeySpec material_mirror[] = {{"type", required}};
 constexpr KeySpec mesh[] = {{"file"}, {"positions"}, {"indices"}, {"normals"}, {"uvs"}};
-constexpr KeySpec entity[] = {{"name"},     {"parent"}, {"transform"}, {"geometry"},
+constexpr KeySpec entity[] = {{"name"},     {"parent"}, {"transform"}, {"motion"},    {"geometry"},
                               {"material"}, {"light"},  {"camera"},    {"visibility"}};
 constexpr KeySpec transform[] = {{"matrix"}, {"translate"}, {"rotate"}, {"scale"}, {"look_at"}};
 constexpr KeySpec rotate[] = {{"axis", required}, {"degrees", required}};
@@ -56,6 +57,8 @@ constexpr KeySpec camera_perspective[] = {
     {"type", required}, {"fov"}, {"lens_radius"}, {"focal_distance"}, {"screen_window"}};
 constexpr KeySpec camera_orthographic[] = {
     {"type", required}, {"screen_height"}, {"lens_radius"}, {"focal_distance"}, {"screen_window"}};
+constexpr KeySpec camera_spherical[] = {{"type", required}, {"mapping"}};
+constexpr KeySpec motion[] = {{"end", required}, {"times"}};
 constexpr KeySpec visibility[] = {{"camera"}, {"bounces"}, {"shadows"}};
 
 constexpr ObjectSpec specs[] = {{"scene", scene},
@@ -91,6 +94,8 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"light.sky", light_sky},
                                 {"camera.perspective", camera_perspective},
                                 {"camera.orthographic", camera_orthographic},
+                                {"camera.spherical", camera_spherical},
+                                {"motion", motion},
                                 {"visibility", visibility}};
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "engine/film/bands.h"
+#include "scenes/native/transforms.h"
 
 namespace metamer {
 namespace {
@@ -39,6 +40,15 @@ uint32_t read_band_count(const SceneContext& context, const Json::Value& value) 
   return 0;
 }
 
+glm::dvec4 read_crop(const SceneContext& context, const Json::Value& value) {
+  constexpr Range fraction{0, 1};
+  std::array<double, 4> crop{0, 1, 0, 1};
+  context.reader.numbers(value, "crop", fraction, crop);
+  if (crop[0] < crop[1] && crop[2] < crop[3]) return {crop[0], crop[1], crop[2], crop[3]};
+  context.reader.expected(value, "crop", "[x_min, x_max, y_min, y_max], each minimum below its maximum");
+  return {0, 1, 0, 1};
+}
+
 }  // namespace
 
 RenderSettings read_settings(const SceneContext& context, const Json::Value& value) {
@@ -66,6 +76,13 @@ RenderSettings read_settings(const SceneContext& context, const Json::Value& val
   settings.sensor_scale = object.number_f("sensor_scale", positive, settings.sensor_scale);
   if (const Json::Value* spectral = object.find("spectral")) settings.band_count = read_band_count(context, *spectral);
   settings.color = static_cast<ColorMode>(object.choice("color", color_mode_names(), 0));
+  if (const Json::Value* crop = object.find("crop")) settings.crop = read_crop(context, *crop);
+  if (const Json::Value* shutter = object.find("shutter")) {
+    const glm::dvec2 times = read_times(reader, *shutter, "shutter");
+    settings.shutter_open = times.x;
+    settings.shutter_close = times.y;
+  }
+  settings.pixel_jitter = object.boolean("pixel_jitter", settings.pixel_jitter);
   if (const Json::Value* filter = object.find("filter")) settings.filter = read_filter(context, *filter);
   return settings;
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 namespace metamer::pbrt {
 namespace {
@@ -133,27 +132,10 @@ void color_space(Reader& reader, Tokenizer& tokens, std::string_view directive, 
   }
 }
 
-void option(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
-  const auto name = read_string(reader, tokens, directive, source);
-  if (!name) return;
-  if (tokens.peek().kind == TokenKind::end || looks_like_directive(tokens.peek())) {
-    return reader.messages.error(source, fmt::format("Option \"{}\" has no value", *name));
-  }
-  const Token value = tokens.next();
-  const auto number = parse_number(value.text);
-  if (*name == "seed" && number && *number >= 0 && *number <= std::numeric_limits<int32_t>::max()) {
-    reader.scene.settings.seed = static_cast<uint32_t>(*number);
-  } else if (*name == "seed") {
-    reader.messages.error(source, fmt::format("Option \"seed\" expects a non-negative integer, not {}", show(value)));
-  } else {
-    reader.messages.warning_once("option " + *name, source,
-                                 fmt::format("Option \"{}\" is not supported; it changes nothing", *name));
-  }
-}
-
 void accelerator(Reader& reader, std::string_view, Parameters& parameters) {
   parameters.ignore_the_rest();
-  reader.messages.note_once("accelerator", parameters.source(), parameters.what() + ": Embree's is always used");
+  reader.messages.note_once("accelerator", parameters.source(), parameters.what() + ": Embree's is always used",
+                            Strict::allows);
 }
 
 constexpr auto directives = std::to_array<Directive>({
@@ -170,14 +152,14 @@ constexpr auto directives = std::to_array<Directive>({
     {"Integrator", Where::before_world, plain<read_integrator>},
     {"LightSource", Where::in_world, with_attributes<read_light, AttributeTarget::light>},
     {"MakeNamedMaterial", Where::in_world, with_attributes<make_named_material, AttributeTarget::material>},
-    {"MakeNamedMedium", Where::anywhere, plain<make_named_medium>},
+    {"MakeNamedMedium", Where::anywhere, with_attributes<make_named_medium, AttributeTarget::medium>},
     {"Material", Where::in_world, with_attributes<material, AttributeTarget::material>},
     {"MediumInterface", Where::anywhere, medium_interface},
     {"NamedMaterial", Where::in_world, use_named_material},
     {"ObjectBegin", Where::in_world, object_begin},
     {"ObjectEnd", Where::in_world, object_end},
     {"ObjectInstance", Where::in_world, object_instance},
-    {"Option", Where::before_world, option},
+    {"Option", Where::before_world, read_option},
     {"PixelFilter", Where::before_world, plain<read_filter>},
     {"ReverseOrientation", Where::in_world, reverse_orientation},
     {"Sampler", Where::before_world, plain<read_sampler>},

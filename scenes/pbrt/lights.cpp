@@ -52,6 +52,7 @@ double target_factor(Parameters& parameters, std::string_view name, double per_u
 }
 
 void add_light(Reader& reader, Parameters& parameters, const Light& light, const glm::dmat4& transform) {
+  report_moving_light(reader, parameters.source());
   Registry& registry = reader.scene.registry;
   const Entity entity = registry.create();
   registry.set(entity, to_component(transform));

@@ -58,8 +58,8 @@ struct Messages {
   void warning_once(const std::string& kind, Source source, std::string message) {
     if (said.insert(kind).second) warning(source, std::move(message));
   }
-  void note_once(const std::string& kind, Source source, std::string message) {
-    if (said.insert(kind).second) note(source, std::move(message));
+  void note_once(const std::string& kind, Source source, std::string message, Strict strict = Strict::refuses) {
+    if (said.insert(kind).second) diagnostics.note(at(source), std::move(message), strict);
   }
 };
 

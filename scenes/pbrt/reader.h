@@ -29,9 +29,17 @@ struct AreaLight {
 inline constexpr std::string_view attribute_targets[] = {"shape", "light", "material", "medium", "texture"};
 enum class AttributeTarget : uint8_t { shape, light, material, medium, texture };
 
+// The current transformation at the start and at the end of the motion (TransformTimes).
+struct TransformPair {
+  glm::dmat4 start{1.0}, end{1.0};
+  bool moves() const { return start != end; }
+};
+
 struct GraphicsState {
-  glm::dmat4 transform{1.0};  // object to world; before WorldBegin world to camera
-  bool start_time_active = true;
+  glm::dmat4 transform{1.0};  // object to world; before WorldBegin world to camera; at the motion's start
+  glm::dmat4 end_transform{1.0};
+  bool start_time_active = true, end_time_active = true;
+  TransformPair transforms() const { return {transform, end_transform}; }
   bool reverse_orientation = false;
   ColorSpace color_space = ColorSpace::srgb;
   Entity material;
@@ -56,14 +64,14 @@ struct NamedMaterial {
 // A shape as it was said, not yet an entity: ObjectInstance makes several of one.
 struct ShapeRecord {
   Geometry geometry;
-  glm::dmat4 transform;
+  TransformPair transforms;
   Entity material;
   Source source;
 };
 
 struct Instance {
   std::string object;
-  glm::dmat4 transform;
+  TransformPair transforms;
   Source source;
 };
 
@@ -77,7 +85,8 @@ struct Reader {
   GraphicsState state = {};
   std::vector<SavedState> stack = {};
   bool in_world = false;
-  std::map<std::string, glm::dmat4> coordinate_systems = {};
+  std::map<std::string, TransformPair> coordinate_systems = {};
+  double motion_start = 0, motion_end = 1;  // seconds
   std::map<std::string, NamedMaterial> materials = {};
   std::vector<Entity> interface_materials = {};
   // Nothing where a texture could not be made, which has been said.
@@ -107,8 +116,12 @@ void read_scene_file(Reader& reader, const std::string& path, Source named_at);
 
 // transforms.cpp. False: `directive` is not one of these.
 bool read_transform_directive(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source);
+// Gives the entity its Transform and, if it moves, its Motion.
+void set_place(Reader& reader, Entity entity, const TransformPair& transforms);
+// A light where the current transformation moves: it stands as at the start, which is said once.
+void report_moving_light(Reader& reader, Source source);
 
-// settings.cpp. `kind` is the string after the directive.
+// settings.cpp, film.cpp. `kind` is the string after the directive.
 void read_camera(Reader& reader, std::string_view kind, Parameters& parameters);
 void read_film(Reader& reader, std::string_view kind, Parameters& parameters);
 void read_filter(Reader& reader, std::string_view kind, Parameters& parameters);

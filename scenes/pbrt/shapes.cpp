@@ -132,12 +132,17 @@ void read_shape(Reader& reader, std::string_view kind, Parameters& parameters) {
                                    "shapes of an object emit no light, as in pbrt; this AreaLightSource does nothing");
     }
     reader.objects[*reader.object].push_back(
-        {shape->geometry, reader.state.transform, reader.state.material, parameters.source()});
+        {shape->geometry, reader.state.transforms(), reader.state.material, parameters.source()});
     return;
   }
   Registry& registry = reader.scene.registry;
   const Entity entity = registry.create();
-  registry.set(entity, to_component(reader.state.transform));
+  TransformPair transforms = reader.state.transforms();
+  if (reader.state.area_light.on) {
+    report_moving_light(reader, parameters.source());
+    transforms.end = transforms.start;
+  }
+  set_place(reader, entity, transforms);
   registry.set(entity, shape->geometry);
   registry.set(entity, parameters.source());
   if (!reader.state.material.is_null()) registry.set(entity, MaterialSlot{reader.state.material});

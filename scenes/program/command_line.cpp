@@ -19,6 +19,8 @@ constexpr uint32_t largest_tile = 1024;     // pixels: beyond, a thread's own su
 constexpr uint32_t deepest_path = 65535;    // scattering events
 constexpr float largest_exposure = 100.0f;  // stops: what tone mapping takes
 
+constexpr const char* strict_help = "Warnings and notes are errors, as long as the picture depends on them";
+
 constexpr const char* main_footer = R"(Examples:
   metamer render                                   the default scene
   metamer render cornell-box/scene.pbrt --spp 64   writes cornell-box.exr and cornell-box.png here
@@ -99,6 +101,7 @@ void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
   add_look_flags(*render, texts.look);
   option("--stats", arguments.stats, "STATS.json", "Write times, rays and memory there");
   render->add_flag("--preview-only", arguments.preview_only, "Leave the film's exact sums out of the EXR");
+  render->add_flag("--strict", arguments.strict, strict_help);
   render->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");
 }
 
@@ -123,6 +126,7 @@ void add_info(CLI::App& app, InfoArguments& arguments) {
   info->footer(info_footer);
   info->add_option("SCENE", arguments.scene, "pbrt-v4 or metamer JSON file; without one, the default scene")
       ->type_name("");
+  info->add_flag("--strict", arguments.strict, strict_help);
   info->add_flag("--json", arguments.json, "Print JSON");
 }
 

@@ -32,6 +32,7 @@ struct RenderArguments {
   Look look;                        // of the PNG; all but its exposure and threads
   bool automatic_exposure = false;  // of the PNG, instead of the scene's
   bool preview_only = false;
+  bool strict = false;  // what is not supported is an error
   bool quiet = false;
 };
 
@@ -47,6 +48,7 @@ struct DevelopArguments {
 
 struct InfoArguments {
   std::string scene;
+  bool strict = false;
   bool json = false;
 };
 

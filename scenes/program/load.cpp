@@ -53,29 +53,31 @@ size_t coated_bytes(const CoatedColumns& c) {
 
 }  // namespace
 
-LoadedScene load_scene(const std::string& path, const SceneOverrides& overrides, bool quiet) {
+LoadedScene load_scene(const std::string& path, const SceneOverrides& overrides, Remarks remarks) {
   const Clock::time_point start = Clock::now();
   LoadedScene loaded;
   const bool is_good = read_scene(path, loaded.scene, loaded.diagnostics);
+  if (remarks.strict) loaded.diagnostics.apply_strict();
   if (!is_good || loaded.diagnostics.has_errors()) {
     print_diagnostics(loaded.diagnostics, path);
     throw Failure(exit_wrong_input, "");
   }
-  if (!quiet) print_diagnostics(loaded.diagnostics, path);
+  if (!remarks.quiet) print_diagnostics(loaded.diagnostics, path);
   apply(overrides, loaded.scene.settings);
   loaded.seconds = seconds_since(start);
   return loaded;
 }
 
-BuiltWorld build_world(const LoadedScene& loaded, const std::string& path, bool quiet) {
+BuiltWorld build_world(const LoadedScene& loaded, const std::string& path, Remarks remarks) {
   const Clock::time_point start = Clock::now();
   BuiltWorld built;
   built.world = freeze(loaded.scene, built.diagnostics);
+  if (remarks.strict) built.diagnostics.apply_strict();
   if (built.world == nullptr || built.diagnostics.has_errors()) {
     print_diagnostics(built.diagnostics, path);
     throw Failure(exit_wrong_input, "");
   }
-  if (!quiet) print_diagnostics(built.diagnostics, path);
+  if (!remarks.quiet) print_diagnostics(built.diagnostics, path);
   built.seconds = seconds_since(start);
   return built;
 }
@@ -84,8 +86,9 @@ size_t world_bytes(const World& world) {
   const ObjectColumns& o = world.objects;
   const Environment& e = world.environment;
   return bytes_of(o.kind, o.first_triangle, o.triangle_count, o.shade_kind, o.material, o.first_light, o.placement,
-                  o.visibility) +
-         bytes_of(world.positions, world.normals, world.uvs, world.triangle_vertices, world.placements) +
+                  o.visibility, o.first_key, o.key_count) +
+         bytes_of(world.positions, world.normals, world.uvs, world.triangle_vertices, world.placements,
+                  world.motion_keys, world.camera_keys) +
          coated_bytes(world.smooth_coated) + coated_bytes(world.rough_coated) +
          bytes_of(world.rough.kd, world.rough.ks, world.rough.shininess, world.rough.normalized) +
          bytes_of(world.diffuse.reflectance, world.conductor.eta, world.conductor.kappa, world.conductor.alpha_x,

@@ -216,6 +216,24 @@ INSTANTIATE_TEST_SUITE_P(
          "1: error: Integrator \"path\": 'maxdepth' is -1, but must be at least 0"},
         {"Option \"seed\" -1", "1: error: Option \"seed\" expects a non-negative integer, not '-1'"},
         {"Option \"seed\"", "1: error: Option \"seed\" has no value"},
+        {"Option \"seed\" 1.5", "1: error: Option \"seed\" expects a non-negative integer, not '1.5'"},
+        {"Option \"disablepixeljitter\" 1", "1: error: Option \"disablepixeljitter\" expects true or false, not '1'"},
+        {"Option \"msereferenceimage\" a", "1: error: Option \"msereferenceimage\" expects a quoted string, not 'a'"},
+        {"Option \"displacementedgescale\" \"1\"",
+         "1: error: Option \"displacementedgescale\" expects a number, not \"1\""},
+        {"Option \"force\" true", "1: error: there is no Option \"force\""},
+        {"Option \"sed\" 1", "1: error: there is no Option \"sed\" (did you mean 'seed'?)"},
+        {"Film \"rbg\"", "1: error: there is no Film \"rbg\" (did you mean 'rgb'?)"},
+        {"Film \"rgb\" \"string sensor\" \"canon_eos_5\"",
+         "1: error: Film \"rgb\": there is no sensor \"canon_eos_5\" (did you mean 'canon_eos_5d'?)"},
+        {"Film \"rgb\" \"float cropwindow\" [0 1.5 0 1]",
+         "1: error: Film \"rgb\": 'cropwindow' expects x_min x_max y_min y_max, each minimum below its maximum, from 0 "
+         "up to 1 and 1"},
+        {"Film \"rgb\" \"integer pixelbounds\" [4 4 0 1]",
+         "1: error: Film \"rgb\": 'pixelbounds' expects x_min x_max y_min y_max, each minimum below its maximum, from "
+         "0 "
+         "up to 1280 and 720"},
+        {"PixelFilter \"gausian\"", "1: error: there is no PixelFilter \"gausian\" (did you mean 'gaussian'?)"},
         {"Shape \"sphere\"", "1: error: Shape must stand after WorldBegin"},
     }));
 
