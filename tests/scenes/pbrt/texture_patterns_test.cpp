@@ -12,7 +12,7 @@ using testing::HasSubstr;
 struct PatternRead {
   ReadScene read;
   explicit PatternRead(const std::string& world, const std::string& type = "spectrum")
-      : read(read_scene("Camera \"perspective\" WorldBegin\n" + world +
+      : read(read_text("Camera \"perspective\" WorldBegin\n" + world +
                         (type == "spectrum" ? "\nMaterial \"diffuse\" \"texture reflectance\" \"t\"" : "") +
                         " Shape \"sphere\"")) {
     EXPECT_THAT(read.messages, ElementsAre());
@@ -102,7 +102,7 @@ TEST(PbrtTexturePatterns, NoisesHaveOctavesAndRoughness) {
 }
 
 TEST(PbrtTexturePatterns, MistakesAreSaidWithTheirLines) {
-  const ReadScene read = read_scene(
+  const ReadScene read = read_text(
       "Camera \"perspective\" WorldBegin\n"
       "Texture \"a\" \"float\" \"fbm\" \"integer octaves\" 65\n"
       "Texture \"b\" \"spectrum\" \"fbm\"\n"
