@@ -13,8 +13,8 @@ struct PatternRead {
   ReadScene read;
   explicit PatternRead(const std::string& world, const std::string& type = "spectrum")
       : read(read_text("Camera \"perspective\" WorldBegin\n" + world +
-                        (type == "spectrum" ? "\nMaterial \"diffuse\" \"texture reflectance\" \"t\"" : "") +
-                        " Shape \"sphere\"")) {
+                       (type == "spectrum" ? "\nMaterial \"diffuse\" \"texture reflectance\" \"t\"" : "") +
+                       " Shape \"sphere\"")) {
     EXPECT_THAT(read.messages, ElementsAre());
   }
   Texture at(TextureId id) const { return read.scene.textures.at(id); }
