@@ -50,6 +50,14 @@ TEST(PbrtSettings, CamerasHaveFovLensAndScreenWindow) {
   EXPECT_EQ(o.screen_window, glm::vec4(-3, 3, -2, 2));
 }
 
+TEST(PbrtSettings, SphericalCamerasHaveAMapping) {
+  EXPECT_EQ(camera("\"spherical\"").kind, CameraKind::spherical);
+  EXPECT_EQ(camera("\"spherical\"").mapping, ImageMapping::equal_area);
+  EXPECT_EQ(camera("\"spherical\" \"string mapping\" \"equalarea\"").mapping, ImageMapping::equal_area);
+  const Camera c = camera("\"spherical\" \"string mapping\" \"equirectangular\" \"float shutterclose\" 2");
+  EXPECT_EQ(c.mapping, ImageMapping::latitude_longitude);
+}
+
 TEST(PbrtSettings, ExposureIsTheShuttersTimeTimesIsoOverAHundred) {
   const ReadScene read = read_settings(
       "Film \"rgb\" \"float iso\" 400\nCamera \"perspective\" \"float shutteropen\" 1 \"float shutterclose\" 1.5");
@@ -84,7 +92,7 @@ TEST(PbrtSettings, FiltersHaveTheirOwnDefaults) {
 }
 
 TEST(PbrtSettings, WhatIsUsedInsteadIsSaid) {
-  const ReadScene read = read_settings(R"(Camera "spherical" "string mapping" "equalarea"
+  const ReadScene read = read_settings(R"(Camera "realistic" "string lensfile" "wide.dat"
 Film "gbuffer" "string coordinatesystem" "world" "integer xresolution" 12
 PixelFilter "mitchell" "float B" 0.3
 Sampler "zsobol" "string randomization" "none"
@@ -99,7 +107,8 @@ Film "rgb" "float maxcomponentvalue" 10 "string sensor" "canon_eos_5d" "string f
   EXPECT_THAT(
       read.messages,
       testing::ElementsAre(
-          "scene:1: warning: Camera \"spherical\" is not supported yet; a perspective camera of 90 degrees is used",
+          "scene:1: warning: Camera \"realistic\" is not supported; a perspective camera of 90 degrees is used: give "
+          "it the lens's 'fov' instead",
           "scene:2: warning: Film \"gbuffer\" is not supported; its size and exposure are used, it records R G B",
           "scene:3: warning: PixelFilter \"mitchell\" is not supported; gaussian of radius 1.5 and sigma 0.5 "
           "pixels is used",
