@@ -108,7 +108,7 @@ TEST(PbrtTexturePatterns, MistakesAreSaidWithTheirLines) {
       "Texture \"b\" \"spectrum\" \"fbm\"\n"
       "Texture \"c\" \"float\" \"marble\"\n"
       "Texture \"d\" \"float\" \"directionmix\" \"vector3 dir\" [0 0 0]\n"
-      "Texture \"e\" \"float\" \"dots\" \"string mapping\" \"plane\"\n"
+      "Texture \"e\" \"float\" \"dots\" \"string mapping\" \"planer\"\n"
       "Texture \"f\" \"float\" \"checkerboard\" \"integer dimension\" 4\n"
       "Texture \"g\" \"float\" \"dots\" \"string mapping\" \"spherical\" \"float uscale\" 2\n");
   EXPECT_FALSE(read.ok);
@@ -117,7 +117,7 @@ TEST(PbrtTexturePatterns, MistakesAreSaidWithTheirLines) {
                           HasSubstr("3: error: texture \"fbm\" makes values of type \"float\""),
                           HasSubstr("4: error: texture \"marble\" makes values of type \"spectrum\""),
                           HasSubstr("5: error: Texture \"directionmix\": a direction of length 0"),
-                          HasSubstr("6: error: Texture \"dots\": there is no mapping \"plane\" (did you mean"),
+                          HasSubstr("6: error: Texture \"dots\": there is no mapping \"planer\" (did you mean"),
                           HasSubstr("7: error: Texture \"checkerboard\": expected 2 or 3, not 4"),
                           HasSubstr("8: error: Texture \"dots\" has no parameter 'float uscale'")));
 }
