@@ -21,13 +21,14 @@ void take_paths(BatchArena& arena, size_t rows, PathStream& s) {
 }
 
 void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
-  for (auto* columns :
-       {&s.wo, &s.position, &s.normal, &s.shading_normal, &s.tangent, &s.light_direction, &s.next_direction})
+  for (auto* columns : {&s.wo, &s.position, &s.normal, &s.shading_normal, &s.tangent, &s.dp_du, &s.dp_dv, &s.dn_du,
+                        &s.dn_dv, &s.light_direction, &s.next_direction})
     take_all(arena, rows, *columns);
   for (auto* columns :
        {&s.lambda_nm, &s.throughput, &s.reflectance, &s.transmittance, &s.light_radiance, &s.next_weight})
     take_all(arena, rows, *columns);
   take_all(arena, rows, s.uv);
+  take_all(arena, rows, s.alpha);
   for (float** column : {&s.distance, &s.offset, &s.pdf_direction, &s.eta_scale, &s.light_distance, &s.light_pdf,
                          &s.next_pdf, &s.next_eta_scale, &s.time})
     *column = arena.take<float>(rows);
@@ -37,7 +38,7 @@ void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
   take_all(arena, rows, s.next_media);
 }
 
-constexpr size_t columns_in_all = 2 * 22 + 4 + (7 * 3 + 6 * 4 + 2 + 9 + 5 + 4) + (6 + 1 + 4 + 2) + (12 + 2) + 1;
+constexpr size_t columns_in_all = 2 * 22 + 4 + (11 * 3 + 6 * 4 + 4 + 9 + 5 + 4) + (6 + 1 + 4 + 2) + (12 + 2) + 1;
 constexpr size_t column_bytes = (sorted_capacity + column_lanes) * sizeof(float) + 2 * column_alignment;
 
 }  // namespace

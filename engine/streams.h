@@ -2,7 +2,7 @@
 // columns together stay within a core's L2 cache. Nothing here outlives a batch, except the slots, which live
 // until the batch is accumulated.
 //
-// Per path: PathStream 92 bytes, twice (this bounce's and the next one's rays); HitStream 16; ShadeStream 260;
+// Per path: PathStream 92 bytes, twice (this bounce's and the next one's rays); HitStream 16; ShadeStream 316;
 // ShadowStream 52; Slots 56.
 #pragma once
 #include <array>
@@ -125,6 +125,8 @@ struct ShadeStream {
   Columns<float, 3> normal;                   // geometric, unit, on the side the shape calls its outside
   Columns<float, 3> shading_normal, tangent;  // unit; tangent only where the world asks for it
   Columns<float, 2> uv;                       // only where the world has textures
+  Columns<float, 3> dp_du, dp_dv;             // of the position, as shading sees it; only where the world has bumps
+  Columns<float, 3> dn_du, dn_dv;             // of the shading normal; the same
   float* distance;                            // metres from the previous vertex
   float* offset;                              // metres along the normal that a new ray must start away from the surface
   uint32_t* material;                         // row in the table of the kind
@@ -138,6 +140,7 @@ struct ShadeStream {
   bool carries_time = false;
   // Writer: textures, in lanes whose material has one.
   Columns<float, 4> reflectance, transmittance;
+  Columns<float, 2> alpha;  // GGX widths along and across the tangent
   // Writer: light_sample. Lanes without a light sample have radiance 0.
   Columns<float, 3> light_direction;  // unit, from the vertex
   Columns<float, 4> light_radiance;   // already divided by the pdf

@@ -82,20 +82,25 @@ void disk_distances(const Placement& placement, const ObjectRay& ray, double (&t
     t[0] = distance;
 }
 
-// The nearest hit in (near, far), or infinity.
-float quadric_distance(const World& world, uint32_t object, const ObjectRay& ray, float near, float far) {
+// The nearest hit in (near, far) that is there, or infinity.
+template <class IsThere>
+float quadric_distance(const World& world, uint32_t object, const ObjectRay& ray, float near, float far,
+                       const IsThere& counts) {
   const Placement& placement = world.placements[world.objects.placement[object]];
   double t[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   if (world.objects.kind[object] == static_cast<uint32_t>(ShapeKind::sphere))
     sphere_distances(placement, ray, t);
   else
     disk_distances(placement, ray, t);
-  for (const double distance : t)
-    if (distance > near && distance < far) return static_cast<float>(distance);
+  for (uint32_t nth = 0; nth < 2; ++nth) {
+    const auto distance = static_cast<float>(t[nth]);
+    if (t[nth] > near && t[nth] < far && counts(distance, nth)) return distance;
+  }
   return std::numeric_limits<float>::infinity();
 }
 
-float lane_distance(const World& world, uint32_t object, RTCRayN* rays, unsigned n, unsigned lane) {
+float lane_distance(const World& world, uint32_t object, const RTCIntersectContext* context, RTCRayN* rays, unsigned n,
+                    unsigned lane) {
   const float origin[3] = {RTCRayN_org_x(rays, n, lane), RTCRayN_org_y(rays, n, lane), RTCRayN_org_z(rays, n, lane)};
   const float direction[3] = {RTCRayN_dir_x(rays, n, lane), RTCRayN_dir_y(rays, n, lane), RTCRayN_dir_z(rays, n, lane)};
   ObjectRay ray;
@@ -106,7 +111,14 @@ float lane_distance(const World& world, uint32_t object, RTCRayN* rays, unsigned
     moving_to_object(world, object, RTCRayN_time(rays, n, lane), to_object);
     ray = to_object_space(to_object, origin, direction);
   }
-  return quadric_distance(world, object, ray, RTCRayN_tnear(rays, n, lane), RTCRayN_tfar(rays, n, lane));
+  const auto counts = [&](float distance, uint32_t nth) {
+    if (!world.has_masks) return true;
+    RayHit hit;
+    hit.object = object;
+    hit.distance = distance;
+    return is_there(world, *reinterpret_cast<const RayContext*>(context), RTCRayN_id(rays, n, lane), hit, nth);
+  };
+  return quadric_distance(world, object, ray, RTCRayN_tnear(rays, n, lane), RTCRayN_tfar(rays, n, lane), counts);
 }
 
 void intersect_quadric(const RTCIntersectFunctionNArguments* args) {
@@ -115,7 +127,7 @@ void intersect_quadric(const RTCIntersectFunctionNArguments* args) {
   RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
   for (unsigned lane = 0; lane < args->N; ++lane) {
     if (args->valid[lane] == 0) continue;
-    const float distance = lane_distance(world, args->geomID, rays, args->N, lane);
+    const float distance = lane_distance(world, args->geomID, args->context, rays, args->N, lane);
     if (std::isinf(distance)) continue;
     RTCRayN_tfar(rays, args->N, lane) = distance;
     RTCHitN_geomID(hits, args->N, lane) = args->geomID;
@@ -128,7 +140,7 @@ void occluded_quadric(const RTCOccludedFunctionNArguments* args) {
   const World& world = *static_cast<const Accelerator::Quadric*>(args->geometryUserPtr)->world;
   for (unsigned lane = 0; lane < args->N; ++lane) {
     if (args->valid[lane] == 0) continue;
-    if (!std::isinf(lane_distance(world, args->geomID, args->ray, args->N, lane)))
+    if (!std::isinf(lane_distance(world, args->geomID, args->context, args->ray, args->N, lane)))
       RTCRayN_tfar(args->ray, args->N, lane) = -std::numeric_limits<float>::infinity();
   }
 }
@@ -169,6 +181,10 @@ RTCGeometry triangle_geometry(const World& world, RTCDevice device, uint32_t obj
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, world.triangle_vertices.data(),
                              size_t{3} * sizeof(uint32_t) * world.objects.first_triangle[object], 3 * sizeof(uint32_t),
                              world.objects.triangle_count[object]);
+  if (!world.has_masks) return geometry;
+  rtcSetGeometryUserData(geometry, const_cast<World*>(&world));
+  rtcSetGeometryIntersectFilterFunction(geometry, filter_masked);
+  rtcSetGeometryOccludedFilterFunction(geometry, filter_masked);
   return geometry;
 }
 

@@ -224,6 +224,19 @@ void add_quadric_object(Builder& b, Entity entity, const Geometry& geometry, con
   spread_power_of(b, entity);
 }
 
+// The last object's alpha. Of a constant one 0 is not there for any ray, and 1 is no mask.
+void mask_object(Builder& b, TextureId texture) {
+  if (texture == no_index) return;
+  const TextureProgram program = b.world.textures.programs[texture];
+  const TextureOp& first = b.world.textures.ops[program.begin];
+  if (program.end - program.begin == 1 && first.code == TextureOpcode::number) {
+    if (first.number <= 0) b.world.objects.visibility.back() = 0;
+    if (first.number <= 0 || first.number >= 1) return;
+  }
+  b.world.objects.alpha.back() = texture;
+  b.world.has_masks = true;
+}
+
 }  // namespace
 
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
@@ -254,6 +267,8 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
     objects.material.push_back(materials[entity.index].row);
     objects.first_light.push_back(no_index);
     objects.visibility.push_back(registry.get<Visibility>(entity).mask);
+    objects.alpha.push_back(no_index);
+    mask_object(b, geometry.alpha_texture);
     const double size = geometry.kind == ShapeKind::mesh ? b.mesh_extent[geometry.mesh] : extent(geometry, nullptr);
     const Place place = place_of(b, entity, to_world[entity.index]);
     add_motion(world, place);

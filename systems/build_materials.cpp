@@ -92,11 +92,23 @@ MaterialRow add_rough(const Material& material, World& world) {
   return {ShadeKind::rough, static_cast<uint32_t>(table.kd.size() - 1)};
 }
 
+// Programs in place of the widths; true where there are any: then the surface is rough everywhere.
+bool add_alpha_textures(const Material& material, Column<uint32_t> (&programs)[2], World& world) {
+  programs[0].push_back(material.alpha_x_texture);
+  programs[1].push_back(material.alpha_y_texture);
+  const bool varies = material.alpha_x_texture != no_index || material.alpha_y_texture != no_index;
+  world.has_textured_alpha = world.has_textured_alpha || varies;
+  if (varies && material.alpha_x_texture != material.alpha_y_texture) world.needs_tangents = true;
+  return varies;
+}
+
 MaterialRow add_conductor(const Material& material, World& world) {
-  const bool is_mirror_like = material.alpha_x < smooth_alpha && material.alpha_y < smooth_alpha;
+  const bool varies = add_alpha_textures(material, world.conductor.alpha_texture, world);
+  const bool is_mirror_like = !varies && material.alpha_x < smooth_alpha && material.alpha_y < smooth_alpha;
   ConductorColumns& table = world.conductor;
   table.eta.push_back(material.eta);
   table.kappa.push_back(material.kappa);
+  table.texture.push_back(material.reflectance_texture);
   // One width may be nearly nothing, the lobe's normalisation may not.
   table.alpha_x.push_back(std::max(material.alpha_x, least_alpha));
   table.alpha_y.push_back(std::max(material.alpha_y, least_alpha));
@@ -125,7 +137,8 @@ uint32_t add_medium(const Material& material, World& world) {
 }
 
 MaterialRow add_dielectric(const Material& material, World& world) {
-  const bool is_smooth = material.alpha_x < smooth_alpha && material.alpha_y < smooth_alpha;
+  const bool varies = add_alpha_textures(material, world.dielectric.alpha_texture, world);
+  const bool is_smooth = !varies && material.alpha_x < smooth_alpha && material.alpha_y < smooth_alpha;
   const bool is_partly_opaque = world.spectra.max_value(material.kappa) >= double{refracting_kappa};
   DielectricColumns& table = world.dielectric;
   table.eta.push_back(material.eta);
@@ -176,7 +189,8 @@ void check_optics(const Scene& scene, Entity entity, const Material& material, D
   const bool absorbs = spectra.max_value(material.kappa) > 0;
   if (material.kind == MaterialKind::dielectric && spectra.max_value(material.kappa) >= double{refracting_kappa})
     error("its kappa reaches 0.01, where matter is opaque; a dielectric's stays below, 'smooth' may have any");
-  if (material.thin != 0 && std::max(material.alpha_x, material.alpha_y) >= smooth_alpha)
+  const bool varies = material.alpha_x_texture != no_index || material.alpha_y_texture != no_index;
+  if (material.thin != 0 && (varies || std::max(material.alpha_x, material.alpha_y) >= smooth_alpha))
     error("a thin material has no roughness");
   if (material.thin != 0 && material.priority > 0) error("a thin material has no inside and takes no priority");
   if (material.thin != 0 && absorbs && material.thickness == 0) error("a thin material with kappa needs a thickness");
@@ -199,6 +213,19 @@ MaterialRow add_material(const Material& material, World& world) {
   return add_dielectric(material, world);
 }
 
+// What bends the shading normal of a material's row.
+void add_bump(const Scene& scene, const Material& material, const MaterialRow& row, World& world) {
+  uint32_t key = material.displacement;
+  if (material.normal_map != no_index)
+    key = static_cast<uint32_t>(world.textures.programs.size()) +
+          add_normal_map(scene.images[material.normal_map], material.normal_map, world.textures);
+  if (key == no_index || row.kind == ShadeKind::absorber) return;
+  Column<uint32_t>& bumps = world.bumps[static_cast<size_t>(row.kind)];
+  while (bumps.size() <= row.row) bumps.push_back(no_index);
+  bumps[row.row] = key;
+  world.has_bumps = true;
+}
+
 }  // namespace
 
 std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagnostics& diagnostics) {
@@ -215,7 +242,9 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
       check_optics(scene, entity, material, diagnostics);
     const bool is_coated = material.kind == MaterialKind::coated || material.kind == MaterialKind::layered;
     if (is_coated && !check_coated(scene, entity, material, diagnostics)) return;
-    if (material.kind != MaterialKind::mix) own[entity.index] = add_material(material, world);
+    if (material.kind == MaterialKind::mix) return;
+    own[entity.index] = add_material(material, world);
+    add_bump(scene, material, own[entity.index], world);
   });
   if (world.media.eta.size() > largest_medium + 1)
     diagnostics.error({}, fmt::format("the scene has {} media that paths follow; at most {} are possible",

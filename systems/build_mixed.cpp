@@ -41,8 +41,9 @@ struct Mixer {
     if (!std::isfinite(mix.amount)) error(entity, "'amount' is not a number");
     for (const Entity part : {mix.first, mix.second})
       if (!scene.registry.has<Material>(part)) error(entity, "it is mixed of something that is not a material");
-    if (mix.amount <= 0) return row_of(mix.first);
-    if (mix.amount >= 1) return row_of(mix.second);
+    const bool varies = mix.amount_texture != no_index;
+    if (!varies && mix.amount <= 0) return row_of(mix.first);
+    if (!varies && mix.amount >= 1) return row_of(mix.second);
     MixRow row;
     const MaterialRow parts[2] = {row_of(mix.first), row_of(mix.second)};
     for (size_t k = 0; k < 2; ++k) {
@@ -50,6 +51,7 @@ struct Mixer {
       row.row[k] = parts[k].row;
     }
     row.amount = mix.amount;
+    row.amount_texture = mix.amount_texture;
     world.mixes.push_back(row);
     return {static_cast<ShadeKind>(mixed_kind), static_cast<uint32_t>(world.mixes.size() - 1)};
   }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "systems/freeze.h"
 #include "systems/image_texels.h"
@@ -12,6 +13,7 @@ constexpr size_t most_texels = size_t{1} << 29;  // kernels count floats in 31 b
 
 uint32_t operand_count(TextureKind kind) {
   switch (kind) {
+    case TextureKind::square_root: return 1;
     case TextureKind::scale:
     case TextureKind::checkerboard: return 2;
     case TextureKind::mix: return 3;
@@ -33,7 +35,32 @@ struct Builder {
   TextureSet& set;
   std::vector<uint32_t> image_rows;  // by ImageId: row of TextureSet::images, or no_index
   uint32_t marble_row = no_index;    // the same of marble's colours
+  std::map<std::pair<ImageId, TextureChannel>, uint32_t> number_rows;  // the same of images as numbers
 };
+
+// A pixel as one number.
+float number_of(const Image& image, size_t pixel, TextureChannel channel) {
+  const float* rgb = image.rgb.data() + 3 * pixel;
+  switch (channel) {
+    case TextureChannel::red: return rgb[0];
+    case TextureChannel::green: return rgb[1];
+    case TextureChannel::blue: return rgb[2];
+    case TextureChannel::alpha: return image.alpha.empty() ? 1 : image.alpha[pixel];
+    case TextureChannel::average: break;
+  }
+  return (rgb[0] + rgb[1] + rgb[2]) / 3;
+}
+
+uint32_t add_number_image(Builder& b, ImageId id, TextureChannel channel) {
+  const auto [known, is_new] = b.number_rows.try_emplace({id, channel}, static_cast<uint32_t>(b.set.images.size()));
+  if (!is_new) return known->second;
+  const Image& image = b.scene.images[id];
+  const size_t count = size_t{image.width} * image.height, first = b.set.numbers.size();
+  b.set.images.push_back({static_cast<uint32_t>(first), image.width, image.height});
+  b.set.numbers.resize(first + count);
+  for (size_t pixel = 0; pixel < count; ++pixel) b.set.numbers[first + pixel] = number_of(image, pixel, channel);
+  return known->second;
+}
 
 // pbrt-v4's colours of marble (linear sRGB): cubic Bezier curves over each four neighbours of nine, times 1.5.
 Image marble_colors() {
@@ -69,7 +96,7 @@ void add_image(Builder& b, const Image& image, uint32_t& row) {
 TextureOpcode opcode(const Texture& t) {
   switch (t.kind) {
     case TextureKind::constant: return t.is_number != 0 ? TextureOpcode::number : TextureOpcode::spectrum;
-    case TextureKind::image: return TextureOpcode::image;
+    case TextureKind::image: return t.is_number != 0 ? TextureOpcode::number_image : TextureOpcode::image;
     case TextureKind::scale: return TextureOpcode::multiply;
     case TextureKind::mix: return TextureOpcode::mix;
     case TextureKind::checkerboard: return TextureOpcode::checkerboard;
@@ -80,6 +107,7 @@ TextureOpcode opcode(const Texture& t) {
     case TextureKind::wrinkled: return TextureOpcode::wrinkled;
     case TextureKind::windy: return TextureOpcode::windy;
     case TextureKind::marble: return TextureOpcode::marble;
+    case TextureKind::square_root: return TextureOpcode::square_root;
   }
   return TextureOpcode::number;
 }
@@ -98,7 +126,8 @@ TextureOp make_op(Builder& b, const Texture& t) {
   op.roughness = t.roughness;
   op.variation = t.variation;
   op.code = opcode(t);
-  if (t.kind == TextureKind::image) {
+  if (op.code == TextureOpcode::number_image) op.image = add_number_image(b, t.image, t.channel);
+  if (op.code == TextureOpcode::image) {
     add_image(b, b.scene.images[t.image], b.image_rows[t.image]);
     op.image = b.image_rows[t.image];
   }
@@ -124,6 +153,17 @@ void append_program(Builder& b, const Texture& t) {
 
 }  // namespace
 
+uint32_t add_normal_map(const Image& image, ImageId id, TextureSet& set) {
+  const auto known = std::find(set.normal_map_images.begin(), set.normal_map_images.end(), id);
+  if (known != set.normal_map_images.end()) return static_cast<uint32_t>(known - set.normal_map_images.begin());
+  const size_t first = set.numbers.size();
+  set.normal_map_images.push_back(id);
+  set.normal_maps.push_back({static_cast<uint32_t>(first), image.width, image.height});
+  set.numbers.resize(first + image.rgb.size());
+  std::copy(image.rgb.begin(), image.rgb.end(), set.numbers.begin() + static_cast<ptrdiff_t>(first));
+  return static_cast<uint32_t>(set.normal_maps.size() - 1);
+}
+
 void build_textures(const Scene& scene, World& world, Diagnostics& diagnostics) {
   size_t texels = 0;
   for (const Image& image : scene.images) texels += size_t{image.width} * image.height;
@@ -131,7 +171,7 @@ void build_textures(const Scene& scene, World& world, Diagnostics& diagnostics) 
     return diagnostics.error(
         {}, fmt::format("the images of all textures have {} pixels together; at most {} fit", texels, most_texels));
   world.textures.has_coefficients = scene.settings.color != ColorMode::spectral;
-  Builder b{scene, world.textures, std::vector<uint32_t>(scene.images.size(), no_index)};
+  Builder b{scene, world.textures, std::vector<uint32_t>(scene.images.size(), no_index), no_index, {}};
   std::vector<uint32_t> depths;
   for (TextureId id = 0; id < scene.textures.size(); ++id) {
     depths.push_back(stack_depth(scene.textures, depths, id));

@@ -26,6 +26,8 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
 
 // Textures as programs, program i for texture i; images as texels. Errors: expressions that need too deep a stack.
 void build_textures(const Scene& scene, World& world, Diagnostics& diagnostics);
+// The row of an image as a normal map; one for all that use it.
+uint32_t add_normal_map(const Image& image, ImageId id, TextureSet& set);
 
 // Objects, vertices, quadrics, and the light rows of emitting shapes.
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,

@@ -47,6 +47,7 @@ void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, C
   count_lanes(shade, paths.size, counters);
   clock.charge(SystemId::sort);
   surface(world, paths, batch.hits, batch.order, shade);
+  bump(world, shade);
   textures(world, depth, shade);
   clock.charge(SystemId::surface);
   if (world.has_interiors) media(world, shade);

@@ -9,6 +9,7 @@
 
 #include "engine/sampling/points-inl.h"
 #include "engine/spectrum/spectrum-inl.h"
+#include "systems/bsdf/limits.h"
 #include "systems/bsdf/local-inl.h"
 #include "systems/dimensions.h"
 #include "systems/lanes-inl.h"
@@ -179,6 +180,15 @@ HWY_INLINE void lane_reflectance(const World& world, const Column<uint32_t>& ids
 HWY_INLINE void lane_reflectance(const World& world, const Column<uint32_t>& ids, const Column<uint32_t>& programs,
                                  VI row, const ShadeStream& shade, size_t i, VF out[4]) {
   lane_reflectance(world, ids, programs, shade.reflectance, row, shade, i, out);
+}
+
+// A GGX width of each lane's material: a number of its row, or what `textures` made of program `programs[row]`.
+HWY_INLINE VF lane_alpha(const World& world, const Column<float>& alphas, const Column<uint32_t>& programs, VI row,
+                         const float* textured_alpha, size_t i) {
+  const VF alpha = gather(alphas.data(), row);
+  if (!world.has_textured_alpha) return alpha;
+  const MF textured = float_mask(hn::Ne(gather(programs.data(), row), splat_u(no_index)));
+  return hn::IfThenElse(textured, hn::Max(load(textured_alpha, i), splat(least_alpha)), alpha);
 }
 
 }  // namespace metamer::HWY_NAMESPACE

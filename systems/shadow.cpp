@@ -20,6 +20,7 @@ void start_ray(const World& world, const ShadowStream& shadow, uint32_t i, RTCRa
   ray.tfar = shadow.t_far[i];
   ray.mask = visible_to_shadows;
   ray.flags = 0;
+  ray.id = i;
 }
 
 void add_contribution(const ShadowStream& shadow, uint32_t i, Slots& slots) {
@@ -35,14 +36,13 @@ void shadow(const World& world, const ShadowStream& shadow, Slots& slots, double
     return;
   }
   using Clock = std::chrono::steady_clock;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  RayContext context(shadow.origin, shadow.direction, world.has_motion ? shadow.time : nullptr);
   RTCRay rays[chunk];
   for (uint32_t begin = 0; begin < shadow.size; begin += chunk) {
     const uint32_t count = std::min(chunk, shadow.size - begin);
     for (uint32_t k = 0; k < count; ++k) start_ray(world, shadow, begin + k, rays[k]);
     const Clock::time_point start = Clock::now();
-    for (uint32_t k = 0; k < count; ++k) rtcOccluded1(world.accelerator->root, &context, &rays[k]);
+    for (uint32_t k = 0; k < count; ++k) rtcOccluded1(world.accelerator->root, &context.embree, &rays[k]);
     *embree_seconds += std::chrono::duration<double>(Clock::now() - start).count();
     for (uint32_t k = 0; k < count; ++k)
       if (!(rays[k].tfar < 0)) add_contribution(shadow, begin + k, slots);  // below 0: Embree's word for occluded

@@ -5,13 +5,30 @@
 namespace metamer {
 namespace {
 
+RayHit ray_hit(const World& world, const PathStream& paths, const HitStream& hits, uint32_t path) {
+  RayHit hit;
+  for (size_t i = 0; i < 3; ++i) {
+    hit.origin[i] = paths.origin[i][path];
+    hit.direction[i] = paths.direction[i][path];
+  }
+  if (world.has_motion) hit.time = paths.time[path];
+  hit.object = hits.object[path];
+  hit.primitive = hits.primitive[path];
+  hit.distance = hits.distance[path];
+  return hit;
+}
+
 // Of mixed materials, one within the other, the one that the path meets: its kind, and its row in `material`.
-uint32_t choose_mixed(const World& world, uint32_t depth, const PathStream& paths, uint32_t path, uint32_t* material) {
+uint32_t choose_mixed(const World& world, uint32_t depth, const PathStream& paths, const HitStream& hits, uint32_t path,
+                      uint32_t* material) {
   const PointKeyScalar key{paths.pixel_seed[path], paths.index[path]};
   uint32_t kind = mixed_kind;
   for (uint32_t level = 0; kind == mixed_kind; ++level) {
     const MixRow& mix = world.mixes[*material];
-    const size_t which = sample_1d(key, nested_mix_dimension(depth, level)) < mix.amount ? 1 : 0;
+    float amount = mix.amount;
+    if (mix.amount_texture != no_index)
+      amount = number_at_hit(world, mix.amount_texture, ray_hit(world, paths, hits, path));
+    const size_t which = sample_1d(key, nested_mix_dimension(depth, level)) < amount ? 1 : 0;
     kind = mix.kind[which];
     *material = mix.row[which];
   }
@@ -33,7 +50,7 @@ void sort_hits(const World& world, uint32_t depth, const PathStream& paths, HitS
     if (object != no_index) {
       kind = kind_of_object[object];
       hits.material[i] = world.objects.material[object];
-      if (kind == mixed_kind) kind = choose_mixed(world, depth, paths, i, &hits.material[i]);
+      if (kind == mixed_kind) kind = choose_mixed(world, depth, paths, hits, i, &hits.material[i]);
     }
     kinds[i] = static_cast<uint8_t>(kind);
     ++counts[kind];

@@ -5,6 +5,7 @@
 #include "engine/simd/math-inl.h"
 #include "systems/lanes-inl.h"
 #include "systems/placement-inl.h"
+#include "systems/surface_slopes-inl.h"
 #include "systems/systems.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -19,6 +20,7 @@ struct Surface {
   Vec3 position, normal, shading_normal, tangent;
   VF u, v;
   VF offset;
+  SurfaceSlopes slopes;  // where the world has bumps
 };
 
 // Unit roundoff of float.
@@ -114,6 +116,11 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
     const VF uv_area = hn::MulSub(du1, dv2, hn::Mul(dv1, du2));
     const Vec3 along_u = (e1 * dv2 - e2 * dv1) * hn::CopySign(one, uv_area);
     surface.tangent = if_then_else(hn::Eq(uv_area, zero), make_frame(shading).s, along_u);
+    if (world.has_bumps) {
+      if (world.has_instances)
+        for (Vec3& normal : n) normal = if_then_else(placed, transform_normal(inverse, normal), normal);
+      surface.slopes = triangle_slopes({du1, dv1, du2, dv2}, e1, e2, n, smooth, shading);
+    }
   }
   return surface;
 }
@@ -149,8 +156,9 @@ HWY_INLINE Surface quadric_surface(const World& world, const Vec3& origin, const
   const Vec3 linear = transform_vector(m, local);
   surface.position = linear + m.translation;
   const Vec3 up = {zero, zero, one};
-  const Vec3 normal = normalize(transform_normal(inverse, if_then_else(sphere, local, up)));
-  surface.normal = normal * gather(&first.normal_sign, base);
+  const Vec3 normal = transform_normal(inverse, if_then_else(sphere, local, up));
+  const VF side = gather(&first.normal_sign, base);
+  surface.normal = normalize(normal) * side;
   surface.shading_normal = surface.normal;
   // On a sphere a step along the tangent plane leaves the surface, so distances are uncertain by their own rounding
   // only; the callback works in double.
@@ -160,7 +168,15 @@ HWY_INLINE Surface quadric_surface(const World& world, const Vec3& origin, const
   const Vec3 along = {hn::Neg(local.y), local.x, zero};
   const MF pole = hn::Eq(hn::Add(hn::Abs(local.x), hn::Abs(local.y)), zero);
   surface.tangent = transform_vector(m, if_then_else(pole, Vec3{one, zero, zero}, along));
-  if (world.has_textures()) quadric_uv(local, radius, gather(&first.inner_radius, base), sphere, surface);
+  const VF inner_radius = gather(&first.inner_radius, base);
+  if (world.has_textures()) quadric_uv(local, radius, inner_radius, sphere, surface);
+  if (world.has_bumps) {
+    // The normal of a sphere turns as the point does.
+    const VF bend = hn::IfThenElseZero(sphere, hn::Div(side, hn::Sqrt(dot(normal, normal))));
+    const Slopes p = quadric_slopes(local, radius, inner_radius, sphere);
+    surface.slopes = {{transform_vector(m, p.along_u), transform_vector(m, p.along_v)},
+                      {transform_normal(inverse, p.along_u) * bend, transform_normal(inverse, p.along_v) * bend}};
+  }
   return surface;
 }
 
@@ -221,6 +237,7 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
       s.u = hn::IfThenElse(quadric, q.u, s.u);
       s.v = hn::IfThenElse(quadric, q.v, s.v);
       s.offset = hn::IfThenElse(quadric, q.offset, s.offset);
+      s.slopes = if_then_else(quadric, q.slopes, s.slopes);
     }
     store(s.position, shade.position, i);
     store(s.normal, shade.normal, i);
@@ -229,6 +246,12 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     if (world.has_textures()) {
       store(s.u, shade.uv[0], i);
       store(s.v, shade.uv[1], i);
+    }
+    if (world.has_bumps) {
+      store(s.slopes.position.along_u, shade.dp_du, i);
+      store(s.slopes.position.along_v, shade.dp_dv, i);
+      store(s.slopes.normal.along_u, shade.dn_du, i);
+      store(s.slopes.normal.along_v, shade.dn_dv, i);
     }
     store(s.offset, shade.offset, i);
     const Vec3 travelled = s.position - origin;
@@ -241,6 +264,21 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
   }
 }
 
+SurfacePoint surface_point_kernel(const World& world, const RayHit& hit) {
+  const Vec3 origin = {splat(hit.origin[0]), splat(hit.origin[1]), splat(hit.origin[2])};
+  const Vec3 direction = {splat(hit.direction[0]), splat(hit.direction[1]), splat(hit.direction[2])};
+  const VI object = hn::Set(IntTag(), static_cast<int32_t>(hit.object));
+  const bool is_mesh = world.objects.kind[hit.object] == static_cast<uint32_t>(ShapeKind::mesh);
+  const MF all = hn::Eq(origin.x, origin.x);
+  const VF time = splat(hit.time);
+  const Surface s = is_mesh ? triangle_surface(world, origin, direction, time, object, splat_u(hit.primitive), all)
+                            : quadric_surface(world, origin, direction, time, object, splat(hit.distance));
+  const auto first = [](VF v) { return hn::GetLane(v); };
+  return {{first(s.u), first(s.v)},
+          {first(s.position.x), first(s.position.y), first(s.position.z)},
+          {first(s.normal.x), first(s.normal.y), first(s.normal.z)}};
+}
+
 }  // namespace
 }  // namespace metamer::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -249,10 +287,15 @@ HWY_AFTER_NAMESPACE();
 namespace metamer {
 
 HWY_EXPORT(surface_kernel);
+HWY_EXPORT(surface_point_kernel);
 
 void surface(const World& world, const PathStream& paths, const HitStream& hits, const uint32_t* order,
              ShadeStream& shade) {
   HWY_DYNAMIC_DISPATCH(surface_kernel)(world, paths, hits, order, shade);
+}
+
+SurfacePoint surface_point(const World& world, const RayHit& hit) {
+  return HWY_DYNAMIC_DISPATCH(surface_point_kernel)(world, hit);
 }
 
 }  // namespace metamer

@@ -61,6 +61,24 @@ void sort_hits(const World& world, uint32_t depth, const PathStream& paths, HitS
 void surface(const World& world, const PathStream& paths, const HitStream& hits, const uint32_t* order,
              ShadeStream& shade);
 
+// A ray and what it met: enough to compute the point again.
+struct RayHit {
+  float origin[3] = {}, direction[3] = {};
+  uint32_t object = 0, primitive = 0;
+  float distance = 0;  // of quadrics
+  float time = 0;      // where the world has motion
+};
+// What textures may ask about it.
+struct SurfacePoint {
+  float uv[2], position[3], normal[3];
+};
+SurfacePoint surface_point(const World& world, const RayHit& hit);
+// The value there of a program for numbers: alpha, or the amount of a mixture. The same whatever else is computed.
+float number_at_hit(const World& world, uint32_t program, const RayHit& hit);
+
+// Bends shading normals (and tangents) by displacements and normal maps. Nothing where the world has no bumps.
+void bump(const World& world, ShadeStream& shade);
+
 // Values of materials that vary over their surface, computed in order of the textures. Nothing without textures.
 void textures(const World& world, uint32_t depth, ShadeStream& shade);
 

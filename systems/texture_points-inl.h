@@ -37,7 +37,6 @@ HWY_INLINE Vec3 to_texture_space(const TextureMapping& mapping, const Vec3& p) {
 
 // Coordinates of the point on its texture; z is 0 but for TextureMapping::Kind::point.
 HWY_INLINE Vec3 map_point(const TextureMapping& mapping, const TexturePoint& point) {
-  constexpr float inverse_pi = 0.31830988618f;
   const VF zero = hn::Zero(FloatTag());
   const VF u_offset = splat(mapping.u_offset), v_offset = splat(mapping.v_offset);
   if (mapping.kind == TextureMapping::Kind::uv)

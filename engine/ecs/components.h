@@ -47,10 +47,11 @@ struct Geometry {
   ShapeKind kind = ShapeKind::mesh;
   MeshId mesh = no_index;
   float radius = 1, inner_radius = 0, height = 0, width = 1, depth = 1;
-  uint32_t flip_normal = 0;  // 1: the side an area light emits to, and the normal, are the other one
+  uint32_t flip_normal = 0;            // 1: the side an area light emits to, and the normal, are the other one
+  TextureId alpha_texture = no_index;  // a number: the chance that a ray meets the surface at all; none: 1
   static constexpr auto fields =
       std::make_tuple(&Geometry::kind, &Geometry::mesh, &Geometry::radius, &Geometry::inner_radius, &Geometry::height,
-                      &Geometry::width, &Geometry::depth, &Geometry::flip_normal);
+                      &Geometry::width, &Geometry::depth, &Geometry::flip_normal, &Geometry::alpha_texture);
 };
 
 enum class MaterialKind : uint32_t {
@@ -72,6 +73,10 @@ inline constexpr uint32_t largest_priority = 255;
 // diffuse: `reflectance`. conductor: `eta`, `kappa`, GGX roughness. dielectric: `eta` inside against the outside,
 // `kappa` below refracting_kappa, GGX roughness. `alpha_x`, `alpha_y` are GGX slopes' widths (not remapped); below 1e-3
 // a mirror. smooth: `eta`, `kappa` of any size, on each wavelength a dielectric or a conductor as kappa decides.
+// `alpha_x_texture`, `alpha_y_texture`: numbers in the place of `alpha_x` and `alpha_y`, of a conductor or dielectric
+// that then is rough everywhere. A conductor's `reflectance_texture` stands for eta 1 and the kappa of that reflectance
+// along the normal. `displacement`: a number, metres along the normal, that bends the shading normal; so does
+// `normal_map`, whose red, green and blue are (1 + n) / 2 of a normal along dp/du, across it and along the normal.
 // `priority`: paths keep track of being inside (a dielectric with kappa and anything smooth has 1 at least); `eta` is
 // then against vacuum, and where solids overlap the one of the higher priority fills the space. `thin`: a slab of
 // `thickness` whose two faces are one surface; no inside. rough: diffuse `kd` plus Phong-Blinn `ks`, `shininess` (see
@@ -93,7 +98,8 @@ struct Layer {
 };
 struct Mix {
   Entity first, second;
-  float amount = 0.5f;  // of the second, 0 to 1
+  float amount = 0.5f;                  // of the second, 0 to 1
+  TextureId amount_texture = no_index;  // a number in its place
 };
 struct Hair {
   SpectrumId sigma_a = 0;  // absorption, per radius of the fibre
@@ -103,6 +109,9 @@ struct Material {
   MaterialKind kind = MaterialKind::diffuse;
   SpectrumId reflectance = 0;
   TextureId reflectance_texture = no_index;  // in place of `reflectance`
+  TextureId alpha_x_texture = no_index, alpha_y_texture = no_index;
+  TextureId displacement = no_index;
+  ImageId normal_map = no_index;
   SpectrumId eta = 0, kappa = 0;
   float alpha_x = 0, alpha_y = 0;
   FresnelModel fresnel = FresnelModel::exact;
@@ -118,7 +127,8 @@ struct Material {
   Mix mix;
   Hair hair;
   static constexpr auto fields = std::make_tuple(
-      &Material::kind, &Material::reflectance, &Material::reflectance_texture, &Material::eta, &Material::kappa,
+      &Material::kind, &Material::reflectance, &Material::reflectance_texture, &Material::alpha_x_texture,
+      &Material::alpha_y_texture, &Material::displacement, &Material::normal_map, &Material::eta, &Material::kappa,
       &Material::alpha_x, &Material::alpha_y, &Material::fresnel, &Material::kd, &Material::ks, &Material::shininess,
       &Material::normalized, &Material::priority, &Material::thin, &Material::thickness, &Material::layer,
       &Material::transmittance, &Material::transmittance_texture, &Material::mix, &Material::hair);

@@ -31,7 +31,8 @@ struct Mesh {
 struct Image {
   std::string name;
   uint32_t width = 0, height = 0;
-  std::vector<float> rgb;  // 3 * width * height
+  std::vector<float> rgb;    // 3 * width * height
+  std::vector<float> alpha;  // width * height, or none: 1 everywhere
   ImageMapping mapping = ImageMapping::latitude_longitude;
   ColorSpace color_space = ColorSpace::srgb;
 };

@@ -21,6 +21,7 @@ using TextureId = uint32_t;  // an index into Scene::textures
 // dots          1 in dots of radius 0.35 around some integer points, else 0
 // fbm wrinkled  `octaves` of noise with weights roughness^i, and of its magnitude
 // windy         waves
+// square_root   of a, a number; 0 where that is negative
 // and marble    a reflectance: layers along y, `scale` of them, bent by noise of amplitude `variation`
 enum class TextureKind : uint32_t {
   constant,
@@ -35,7 +36,10 @@ enum class TextureKind : uint32_t {
   wrinkled,
   windy,
   marble,
+  square_root,
 };
+// What of a pixel a number is.
+enum class TextureChannel : uint32_t { average, red, green, blue, alpha };
 // octahedral: over the edge of a square that is an unfolded sphere, to where its faces touch.
 enum class TextureWrap : uint32_t { repeat, clamp, black, octahedral };
 
@@ -58,8 +62,9 @@ struct Texture {
   TextureKind kind = TextureKind::constant;
   uint32_t spectrum = 0;  // SpectrumId
   float value = 0;
-  uint32_t is_number = 0;  // 1: a number (roughness, amount), 0: a reflectance
-  uint32_t image = 0;      // ImageId
+  uint32_t is_number = 0;                            // 1: a number (roughness, amount), 0: a reflectance
+  uint32_t image = 0;                                // ImageId
+  TextureChannel channel = TextureChannel::average;  // of a number
   TextureWrap wrap = TextureWrap::repeat;
   uint32_t nearest = 0;  // 1: the nearest texel, 0: linear between texels
   uint32_t invert = 0;
@@ -76,6 +81,7 @@ enum class TextureOpcode : uint32_t {
   spectrum,
   number,
   image,
+  number_image,
   multiply,
   mix,
   checkerboard,
@@ -86,9 +92,10 @@ enum class TextureOpcode : uint32_t {
   wrinkled,
   windy,
   marble,
+  square_root,
 };
 
-// Takes its operands from the stack (none, two or three of them, in the order a, b, amount) and leaves its value there.
+// Takes its operands from the stack (none to three of them, in the order a, b, amount) and leaves its value there.
 struct TextureOp {
   TextureOpcode code = TextureOpcode::number;
   uint32_t spectrum = 0;
@@ -108,7 +115,7 @@ struct TextureProgram {
   uint32_t begin = 0, end = 0;  // of TextureSet::ops
 };
 struct TextureImage {
-  uint32_t first_texel = 0;
+  uint32_t first_texel = 0;  // of spectra in `texels`, of numbers and normals in `numbers`
   uint32_t width = 0, height = 0;
 };
 
@@ -116,9 +123,12 @@ struct TextureSet {
   std::vector<TextureOp> ops;
   std::vector<TextureProgram> programs;
   std::vector<TextureImage> images;
-  Column<float> texels;           // four per texel: the sigmoid's c0 c1 c2, and a factor on it; or as below
-  bool has_coefficients = false;  // RGB mode: the texel's three coefficients and 0
-  size_t bytes() const { return ops.size() * sizeof(TextureOp) + texels.bytes(); }
+  std::vector<TextureImage> normal_maps;    // three numbers per texel: the file's red, green, blue
+  std::vector<uint32_t> normal_map_images;  // their ImageId
+  Column<float> texels;                     // four per texel: the sigmoid's c0 c1 c2, and a factor on it; or as below
+  bool has_coefficients = false;            // RGB mode: the texel's three coefficients and 0
+  Column<float> numbers;                    // one per texel
+  size_t bytes() const { return ops.size() * sizeof(TextureOp) + texels.bytes() + numbers.bytes(); }
 };
 
 }  // namespace metamer

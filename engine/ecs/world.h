@@ -21,6 +21,7 @@ struct ObjectColumns {
   Column<uint32_t> visibility;   // mask of rays that see it
   Column<uint32_t> first_key;    // into World::motion_keys; unused by what stands still
   Column<uint32_t> key_count;    // 0: it stands still; else 2 or more, evenly spaced over the time of the shutter
+  Column<uint32_t> alpha;        // program of TextureSet: the chance that a ray meets it; no_index: 1
   size_t size() const { return kind.size(); }
 };
 
@@ -67,24 +68,28 @@ struct CoatedColumns {
 };
 struct ConductorColumns {
   Column<uint32_t> eta, kappa;  // SpectrumId
+  Column<uint32_t> texture;     // program of TextureSet, no_index: none. Its reflectance stands for eta and kappa
   Column<float> alpha_x, alpha_y;
-  Column<uint32_t> schlick;  // 1: Schlick's approximation
+  Column<uint32_t> alpha_texture[2];  // programs in place of alpha_x and alpha_y, or no_index
+  Column<uint32_t> schlick;           // 1: Schlick's approximation
 };
 // Everything that light enters, smooth, rough or thin.
 struct DielectricColumns {
   Column<uint32_t> eta, kappa;  // SpectrumId; eta against vacuum where `medium` is not 0, else against the outside
   Column<uint32_t> schlick;
-  Column<uint32_t> dispersive;     // 1: wavelengths part in refraction: eta differs, or some are opaque
-  Column<uint32_t> partly_opaque;  // 1: kappa reaches refracting_kappa on some wavelengths
-  Column<uint32_t> medium;         // row of World::media that is inside; 0: not followed
-  Column<float> alpha_x, alpha_y;  // rough ones
-  Column<float> thickness;         // metres; thin ones
-  Column<uint32_t> is_absolute;    // thin ones: eta is against vacuum
+  Column<uint32_t> dispersive;        // 1: wavelengths part in refraction: eta differs, or some are opaque
+  Column<uint32_t> partly_opaque;     // 1: kappa reaches refracting_kappa on some wavelengths
+  Column<uint32_t> medium;            // row of World::media that is inside; 0: not followed
+  Column<float> alpha_x, alpha_y;     // rough ones
+  Column<uint32_t> alpha_texture[2];  // programs in place of alpha_x and alpha_y, or no_index
+  Column<float> thickness;            // metres; thin ones
+  Column<uint32_t> is_absolute;       // thin ones: eta is against vacuum
 };
 // Which of two materials a hit is of: the second with the chance `amount`. A kind may be mixed_kind again.
 struct MixRow {
   uint32_t kind[2] = {}, row[2] = {};
   float amount = 0;
+  uint32_t amount_texture = no_index;  // program of TextureSet in its place
 };
 // What paths remember being inside of. Row 0 is the vacuum, of priority 0; all others have 1 at least.
 struct MediumColumns {
@@ -200,6 +205,9 @@ struct World {
   Column<uint32_t> summed_lights;  // rows of abstract lights that are summed one by one (local, recursive), not sampled
   Environment environment;
   TextureSet textures;
+  // By kind and row: what bends the shading normal. A program of TextureSet, or their number plus a row of normal_maps;
+  // no_index: nothing. Columns end with the last that has one.
+  std::array<Column<uint32_t>, shade_kind_count> bumps;
   CameraRow camera;               // as the shutter opens
   Column<CameraKey> camera_keys;  // empty: the camera stands still
   SpectrumSet spectra;
@@ -210,9 +218,12 @@ struct World {
   bool needs_tangents = false;  // an anisotropic material is present
   bool has_instances = false;   // some triangles are in their object's space
   bool has_quadrics = false;
-  bool has_motion = false;     // some objects move: paths carry their time
-  bool has_interiors = false;  // some material is followed: paths carry their media
-  bool has_textures() const { return !textures.programs.empty(); }
+  bool has_motion = false;          // some objects move: paths carry their time
+  bool has_interiors = false;       // some material is followed: paths carry their media
+  bool has_textured_alpha = false;  // some roughness varies
+  bool has_bumps = false;
+  bool has_masks = false;  // some object's alpha is not 1
+  bool has_textures() const { return !textures.programs.empty() || !textures.normal_maps.empty(); }
   uint64_t zero_area_triangles = 0;
   std::unique_ptr<Accelerator, void (*)(Accelerator*)> accelerator{nullptr, nullptr};
 };

@@ -3,6 +3,7 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -38,16 +39,33 @@ std::array<int, 3> color_channels(const OIIO::ImageSpec& spec) {
   return is_grey ? std::array<int, 3>{0, 0, 0} : std::array<int, 3>{0, 1, 2};
 }
 
-bool check_pixels(const Image& image, Diagnostics& diagnostics) {
+// Of the file's alpha `nth` of each pixel's `channels` values; none where it is 1 everywhere.
+std::vector<float> alpha_of(const std::vector<float>& all, size_t channels, int nth,
+                            const std::vector<float>& decoded) {
+  std::vector<float> alpha;
+  if (nth < 0) return alpha;
+  const float last_code = static_cast<float>(decoded.size()) - 1;
+  bool is_one = true;
+  for (size_t i = static_cast<size_t>(nth); i < all.size(); i += channels) {
+    const float value = std::clamp(all[i], 0.0f, 1.0f);
+    alpha.push_back(decoded.empty() ? value : decoded[static_cast<size_t>(value * last_code + 0.5f)]);
+    is_one = is_one && alpha.back() == 1;
+  }
+  return is_one ? std::vector<float>() : alpha;
+}
+
+bool check_pixels(const Image& image, bool allows_negative, Diagnostics& diagnostics) {
+  const float least = allows_negative ? -std::numeric_limits<float>::max() : 0;
   size_t count = 0, first = 0;
   for (size_t i = 0; i < image.rgb.size(); ++i) {
-    const bool good = image.rgb[i] >= 0 && image.rgb[i] <= std::numeric_limits<float>::max();
+    const bool good = image.rgb[i] >= least && image.rgb[i] <= std::numeric_limits<float>::max();
     if (!good && count++ == 0) first = i;
   }
   if (count == 0) return true;
-  diagnostics.error({image.name, 0},
-                    fmt::format("pixel ({}, {}) holds {}; expected finite values of at least 0 ({} such values in all)",
-                                first / 3 % image.width, first / 3 / image.width, image.rgb[first], count));
+  diagnostics.error(
+      {image.name, 0},
+      fmt::format("pixel ({}, {}) holds {}; expected finite values{} ({} such values in all)", first / 3 % image.width,
+                  first / 3 / image.width, image.rgb[first], allows_negative ? "" : " of at least 0", count));
   return false;
 }
 
@@ -94,7 +112,9 @@ bool read_image(const std::string& path, const SourceLocation& named_at, Image& 
       image.rgb[3 * pixel + c] = is_encoded ? decoded[static_cast<size_t>(value * last_code + 0.5f)] : value;
     }
   }
-  return check_pixels(image, diagnostics);
+  const int alpha = spec.alpha_channel >= 0 ? spec.alpha_channel : spec.channelindex("A");
+  image.alpha = alpha_of(all, channel_count, alpha, encoding.decodes_alpha ? decoded : std::vector<float>());
+  return check_pixels(image, encoding.allows_negative, diagnostics);
 }
 
 }  // namespace metamer

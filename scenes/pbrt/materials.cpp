@@ -13,10 +13,24 @@ constexpr std::string_view material_kinds[] = {
     "diffuse", "conductor", "dielectric", "coateddiffuse", "coatedconductor", "diffusetransmission",
     "hair",    "interface", "measured",   "mix",           "subsurface",      "thindielectric"};
 
+// Of materials whose widths may be textures.
 void read_roughness(Reader& reader, Parameters& parameters, Material& material) {
-  const Widths widths = read_widths(reader, parameters, "", 0);
-  material.alpha_x = widths.alpha_x;
-  material.alpha_y = widths.alpha_y;
+  const NumberOrTexture both = read_number_or_texture(reader, parameters, "roughness", 0);
+  const bool remap = parameters.boolean("remaproughness", true);
+  if (both.number < 0) parameters.error("roughness", "roughness must not be negative");
+  const auto read = [&](std::string_view name, float& alpha, TextureId& texture) {
+    const NumberOrTexture own =
+        parameters.has(name) ? read_number_or_texture(reader, parameters, name, both.number) : both;
+    if (own.number < 0 && parameters.has(name)) parameters.error(name, "roughness must not be negative");
+    const double roughness = std::max(own.number, 0.0);
+    alpha = static_cast<float>(remap ? std::sqrt(roughness) : roughness);
+    texture = remap && own.texture != no_index ? square_root_of(reader, own.texture) : own.texture;
+  };
+  read("uroughness", material.alpha_x, material.alpha_x_texture);
+  if (both.texture != no_index && !parameters.has("uroughness") && !parameters.has("vroughness"))
+    material.alpha_y_texture = material.alpha_x_texture;
+  else
+    read("vroughness", material.alpha_y, material.alpha_y_texture);
 }
 
 SpectrumId spectrum_or(const std::optional<SpectrumValue>& value, SpectrumId fallback) {
@@ -40,9 +54,16 @@ SpectrumId kappa_of_reflectance(SpectrumSet& spectra, SpectrumId reflectance) {
 
 void read_conductor(Reader& reader, Parameters& parameters, Material& material) {
   material.kind = MaterialKind::conductor;
-  const MetalIndex metal = read_metal(reader, parameters, "");
-  material.eta = metal.eta;
-  material.kappa = metal.kappa;
+  if (parameters.is_texture("reflectance")) {
+    for (const std::string_view name : {"eta", "k"})
+      if (parameters.has(name)) parameters.error(name, fmt::format("'reflectance' and '{}' exclude each other", name));
+    material.reflectance_texture = read_texture_parameter(reader, parameters, "reflectance", false).value_or(no_index);
+    material.eta = unit_spectrum;
+  } else {
+    const MetalIndex metal = read_metal(reader, parameters, "");
+    material.eta = metal.eta;
+    material.kappa = metal.kappa;
+  }
   read_roughness(reader, parameters, material);
 }
 
@@ -157,8 +178,7 @@ Entity read_material(Reader& reader, std::string_view kind, Parameters& paramete
   } else {
     read_unsupported(reader, kind, parameters, material);
   }
-  parameters.unsupported("displacement", "the surface stays as it is");
-  parameters.unsupported("normalmap", "the surface stays as it is");
+  read_bump(reader, parameters, material);
   reader.scene.registry.set(entity, material);
   reader.scene.registry.set(entity, parameters.source());
   return entity;

@@ -59,7 +59,9 @@ void read_diffuse_transmission(Reader& reader, Parameters& parameters, Material&
 void read_mix(Reader& reader, Parameters& parameters, Material& material) {
   material.kind = MaterialKind::mix;
   const Parameter* names = parameters.find("materials", ParameterType::string);
-  material.mix.amount = static_cast<float>(read_real_or_texture(reader, parameters, "amount", 0.5));
+  const NumberOrTexture amount = read_number_or_texture(reader, parameters, "amount", 0.5);
+  material.mix.amount = static_cast<float>(amount.number);
+  material.mix.amount_texture = amount.texture;
   if (names == nullptr || names->strings.size() != 2) {
     parameters.error("materials", fmt::format("'string materials' names the two materials that are mixed, not {}",
                                               names == nullptr ? 0 : names->strings.size()));

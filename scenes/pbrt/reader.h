@@ -147,6 +147,18 @@ std::optional<TextureId> read_texture(Reader& reader, std::string_view kind, Par
 std::optional<TextureId> read_texture_parameter(Reader& reader, Parameters& parameters, std::string_view name,
                                                 bool is_number);
 
+// A "float" parameter, or the texture in its place. A texture that is wrong has been reported.
+struct NumberOrTexture {
+  double number = 0;
+  TextureId texture = no_index;
+};
+NumberOrTexture read_number_or_texture(Reader& reader, Parameters& parameters, std::string_view name, double fallback);
+// `alpha` of a shape; nothing: opaque.
+TextureId read_alpha(Reader& reader, Parameters& parameters);
+TextureId square_root_of(Reader& reader, TextureId texture);
+// `displacement` and `normalmap` of a material.
+void read_bump(Reader& reader, Parameters& parameters, Material& material);
+
 // materials.cpp
 Entity read_material(Reader& reader, std::string_view kind, Parameters& parameters, Entity entity);
 

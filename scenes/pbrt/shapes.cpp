@@ -122,9 +122,10 @@ Light to_light(Parameters& parameters, const AreaLight& area_light, double area)
 }  // namespace
 
 void read_shape(Reader& reader, std::string_view kind, Parameters& parameters) {
-  parameters.unsupported("alpha", "the shape is opaque");
+  const TextureId alpha = read_alpha(reader, parameters);
   std::optional<Shape> shape = read_geometry(reader, kind, parameters);
   if (!shape) return;
+  shape->geometry.alpha_texture = alpha;
   shape->geometry.flip_normal = reader.state.reverse_orientation ? 1 : 0;
   if (reader.object) {
     if (reader.state.area_light.on) {

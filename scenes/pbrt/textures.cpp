@@ -50,21 +50,31 @@ ImageEncoding read_encoding(Parameters& parameters) {
   return encoding;
 }
 
+bool has_extension(const std::string& name, std::string_view extension) {
+  return name.size() > extension.size() &&
+         std::equal(extension.rbegin(), extension.rend(), name.rbegin(),
+                    [](char wanted, char c) { return wanted == (c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c); });
+}
+// pbrt takes the alpha of these files only, and decodes that of PNG like their colours.
+bool is_png(const std::string& name) { return has_extension(name, ".png"); }
+bool may_have_alpha(const std::string& name) { return is_png(name) || has_extension(name, ".exr"); }
+
 // Images are shared by name and encoding.
-std::optional<ImageId> read_shared_image(Reader& reader, Parameters& parameters) {
-  const std::string name = parameters.string("filename", "");
-  const ImageEncoding encoding = read_encoding(parameters);
+std::optional<ImageId> read_shared_image(Reader& reader, Parameters& parameters, std::string_view parameter,
+                                         ImageEncoding encoding) {
+  const std::string name = parameters.string(parameter, "");
   if (name.empty()) {
-    parameters.error("filename", "'string filename' is missing");
+    parameters.error(parameter, fmt::format("'string {}' is missing", parameter));
     return std::nullopt;
   }
+  encoding.decodes_alpha = is_png(name);
+  encoding.allows_negative = true;
   const std::string path = reader.resolve(name);
   const auto [known, fresh] = reader.images.try_emplace({path, encoding.gamma}, std::nullopt);
   if (!fresh) return known->second;
   Image image;
   if (!read_image(path, reader.messages.at(parameters.source()), image, reader.messages.diagnostics, encoding))
     return std::nullopt;
-  image.color_space = reader.state.color_space;
   reader.scene.images.push_back(std::move(image));
   known->second = static_cast<ImageId>(reader.scene.images.size() - 1);
   return known->second;
@@ -84,9 +94,12 @@ std::optional<TextureId> imagemap(Reader& reader, Parameters& parameters, bool i
                  : wrap == "black"            ? TextureWrap::black
                  : wrap == "octahedralsphere" ? TextureWrap::octahedral
                                               : TextureWrap::repeat;
-  const auto image = read_shared_image(reader, parameters);
+  const auto image = read_shared_image(reader, parameters, "filename", read_encoding(parameters));
   if (!image) return std::nullopt;
   texture.image = *image;
+  const bool has_alpha =
+      may_have_alpha(parameters.string("filename", "")) && !reader.scene.images[*image].alpha.empty();
+  if (is_number && has_alpha) texture.channel = TextureChannel::alpha;
   return add_texture(reader, texture);
 }
 
@@ -184,6 +197,35 @@ std::optional<TextureId> read_texture_parameter(Reader& reader, Parameters& para
   reader.messages.error(parameter->source, fmt::format("{}: there is no texture '{}'{}", parameters.what(), wanted,
                                                        did_you_mean(wanted, known)));
   return std::nullopt;
+}
+
+NumberOrTexture read_number_or_texture(Reader& reader, Parameters& parameters, std::string_view name, double fallback) {
+  if (!parameters.is_texture(name)) return {parameters.number(name, fallback), no_index};
+  return {fallback, read_texture_parameter(reader, parameters, name, true).value_or(no_index)};
+}
+
+TextureId read_alpha(Reader& reader, Parameters& parameters) {
+  const NumberOrTexture alpha = read_number_or_texture(reader, parameters, "alpha", 1);
+  return alpha.texture == no_index && alpha.number < 1 ? add_number(reader, alpha.number) : alpha.texture;
+}
+
+TextureId square_root_of(Reader& reader, TextureId texture) {
+  Texture root;
+  root.kind = TextureKind::square_root;
+  root.is_number = 1;
+  root.a = texture;
+  return add_texture(reader, root);
+}
+
+void read_bump(Reader& reader, Parameters& parameters, Material& material) {
+  if (parameters.has("displacement")) {
+    parameters.find("displacement", ParameterType::texture);
+    material.displacement = read_texture_parameter(reader, parameters, "displacement", true).value_or(no_index);
+  }
+  if (!parameters.has("normalmap")) return;
+  ImageEncoding linear;
+  linear.gamma = 1;
+  material.normal_map = read_shared_image(reader, parameters, "normalmap", linear).value_or(no_index);
 }
 
 }  // namespace metamer::pbrt
