@@ -13,8 +13,8 @@ constexpr KeySpec settings[] = {{"size"},    {"samples"}, {"max_depth"},    {"se
 constexpr KeySpec filter_box[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_triangle[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_gaussian[] = {{"type", required}, {"radius"}, {"sigma"}};
-constexpr KeySpec spectrum[] = {{"constant"}, {"table"}, {"named"}, {"blackbody"},
-                                {"daylight"}, {"rgb"},   {"space"}, {"scale"}};
+constexpr KeySpec spectrum[] = {{"constant"}, {"table"}, {"named"},   {"blackbody"}, {"daylight"}, {"rgb"},
+                                {"space"},    {"scale"}, {"samples"}, {"sigmoid"},   {"times"}};
 constexpr KeySpec material_diffuse[] = {{"type", required}, {"reflectance", required}};
 constexpr KeySpec material_rough[] = {{"type", required}, {"kd"}, {"ks"}, {"shininess"}, {"normalized"}};
 constexpr KeySpec material_coated[] = {{"type", required}, {"reflectance", required}, {"glass"}, {"eta"}, {"roughness"},
@@ -41,8 +41,8 @@ constexpr KeySpec geometry_mesh[] = {{"type", required}, {"mesh", required}, {"f
 constexpr KeySpec geometry_sphere[] = {{"type", required}, {"radius"}, {"flip_normal"}};
 constexpr KeySpec geometry_disk[] = {{"type", required}, {"radius"}, {"inner_radius"}, {"height"}, {"flip_normal"}};
 constexpr KeySpec geometry_rectangle[] = {{"type", required}, {"width"}, {"depth"}, {"flip_normal"}};
-constexpr KeySpec light_area[] = {{"type", required}, {"radiance"},     {"luminance"}, {"nits"},     {"lumens"},
-                                  {"spectrum"},       {"cosine_power"}, {"scale"},     {"two_sided"}};
+constexpr KeySpec light_area[] = {{"type", required}, {"radiance"},     {"luminance"}, {"nits"},      {"lumens"},
+                                  {"spectrum"},       {"cosine_power"}, {"scale"},     {"two_sided"}, {"power"}};
 constexpr KeySpec light_point[] = {{"type", required}, {"intensity"}, {"candela"}, {"lumens"}, {"spectrum"}, {"scale"}};
 constexpr KeySpec light_spot[] = {{"type", required}, {"intensity"},  {"candela"},       {"lumens"},
                                   {"spectrum"},       {"cone_angle"}, {"falloff_start"}, {"scale"}};

@@ -17,9 +17,9 @@ void read_roughness(const SceneContext& context, const JsonObject& object, Mater
   if (value == nullptr) return;
   std::array<double, 2> alpha{};
   if (value->isArray()) {
-    context.reader.numbers(*value, "roughness", unit_interval, alpha);
+    context.reader.numbers(*value, "roughness", not_negative, alpha);
   } else {
-    alpha.fill(context.reader.number(*value, "roughness", unit_interval, 0));
+    alpha.fill(context.reader.number(*value, "roughness", not_negative, 0));
   }
   material.alpha_x = static_cast<float>(alpha[0]);
   material.alpha_y = static_cast<float>(alpha[1]);
@@ -111,7 +111,7 @@ void read_coated(SceneContext& context, const JsonObject& object, Material& mate
   const std::string_view way = object.one_of(ways);
   if (way == "glass") material.eta = read_glass(context, *object.find("glass"));
   if (way == "eta") material.eta = read_spectrum(context, *object.find("eta"), "eta", Quantity::eta);
-  material.alpha_x = material.alpha_y = static_cast<float>(object.number("roughness", unit_interval, 0));
+  material.alpha_x = material.alpha_y = static_cast<float>(object.number("roughness", not_negative, 0));
 }
 
 void read_sheet(SceneContext& context, const JsonObject& object, Material& material) {
