@@ -18,6 +18,7 @@ std::string number_text(float value);
 class JsonText {
  public:
   static JsonText number(float value) { return {Kind::scalar, number_text(value)}; }
+  static JsonText decimal(std::string digits) { return {Kind::scalar, std::move(digits)}; }
   static JsonText integer(uint64_t value) { return {Kind::scalar, std::to_string(value)}; }
   static JsonText boolean(bool value) { return {Kind::scalar, value ? "true" : "false"}; }
   static JsonText string(std::string_view text);

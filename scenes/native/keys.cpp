@@ -5,8 +5,8 @@ namespace {
 
 constexpr bool required = true;
 
-constexpr KeySpec scene[] = {{"$schema"}, {"metamer", required}, {"units"},  {"settings"},
-                             {"spectra"}, {"materials"},         {"meshes"}, {"entities", required}};
+constexpr KeySpec scene[] = {{"$schema"},  {"metamer", required}, {"units"},  {"settings"},          {"spectra"},
+                             {"textures"}, {"materials"},         {"meshes"}, {"entities", required}};
 constexpr KeySpec settings[] = {{"size"},    {"samples"}, {"max_depth"},    {"seed"},         {"integrator"},
                                 {"shadows"}, {"filter"},  {"exposure"},     {"sensor_scale"}, {"spectral"},
                                 {"color"},   {"crop"},    {"pixel_jitter"}, {"shutter"}};
@@ -15,6 +15,14 @@ constexpr KeySpec filter_triangle[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_gaussian[] = {{"type", required}, {"radius"}, {"sigma"}};
 constexpr KeySpec spectrum[] = {{"constant"}, {"table"}, {"named"},   {"blackbody"}, {"daylight"}, {"rgb"},
                                 {"space"},    {"scale"}, {"samples"}, {"sigmoid"},   {"times"}};
+constexpr KeySpec texture_reference[] = {{"texture", required}};
+constexpr KeySpec texture_constant[] = {{"type", required}, {"value", required}, {"number"}};
+constexpr KeySpec texture_image[] = {{"type", required}, {"image", required}, {"encoding"}, {"space"}, {"wrap"},
+                                     {"filter"},         {"scale"},           {"invert"},   {"uv"},    {"number"}};
+constexpr KeySpec texture_checkerboard[] = {{"type", required}, {"a"}, {"b"}, {"uv"}, {"number"}};
+constexpr KeySpec texture_scale[] = {{"type", required}, {"a", required}, {"b"}, {"number"}};
+constexpr KeySpec texture_mix[] = {{"type", required}, {"a", required}, {"b", required}, {"amount"}, {"number"}};
+constexpr KeySpec uv[] = {{"scale"}, {"offset"}};
 constexpr KeySpec material_diffuse[] = {{"type", required}, {"reflectance", required}};
 constexpr KeySpec material_rough[] = {{"type", required}, {"kd"}, {"ks"}, {"shininess"}, {"normalized"}};
 constexpr KeySpec material_coated[] = {{"type", required}, {"reflectance", required}, {"glass"}, {"eta"}, {"roughness"},
@@ -67,6 +75,13 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"filter.triangle", filter_triangle},
                                 {"filter.gaussian", filter_gaussian},
                                 {"spectrum", spectrum},
+                                {"texture_reference", texture_reference},
+                                {"texture.constant", texture_constant},
+                                {"texture.image", texture_image},
+                                {"texture.checkerboard", texture_checkerboard},
+                                {"texture.scale", texture_scale},
+                                {"texture.mix", texture_mix},
+                                {"uv", uv},
                                 {"material.diffuse", material_diffuse},
                                 {"material.rough", material_rough},
                                 {"material.coated", material_coated},

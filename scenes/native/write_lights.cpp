@@ -55,7 +55,7 @@ class LightWriter {
     brightness("environment", "radiance");
     if (light_.image == no_index) return;
     const Image& image = context_.scene.images[light_.image];
-    object_.add("image", JsonText::string(context_.image_path(light_.image)));
+    object_.add("image", JsonText::string(context_.folder + "/" + context_.image_file(light_.image).name));
     object_.add("mapping", JsonText::string(mapping_name(image.mapping)));
     object_.add("space", JsonText::string(color_space_name(image.color_space)));
   }

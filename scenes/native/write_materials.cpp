@@ -24,7 +24,7 @@ class MaterialWriter {
  private:
   JsonText diffuse() {
     type("diffuse");
-    spectrum("reflectance", material_.reflectance);
+    reflectance();
     return object_;
   }
 
@@ -67,7 +67,7 @@ class MaterialWriter {
 
   JsonText coated() {
     type("coated");
-    spectrum("reflectance", material_.reflectance);
+    reflectance();
     spectrum("eta", material_.eta);
     roughness();
     fresnel();
@@ -76,6 +76,11 @@ class MaterialWriter {
 
   void type(std::string_view name) { object_.add("type", JsonText::string(name)); }
   void spectrum(std::string_view key, SpectrumId id) { object_.add(key, context_.spectra.write(id)); }
+  void reflectance() {
+    object_.add("reflectance", material_.reflectance_texture != no_index
+                                   ? context_.texture(material_.reflectance_texture)
+                                   : context_.spectra.write_reflectance(material_.reflectance));
+  }
   void roughness() {
     if (material_.alpha_x == 0 && material_.alpha_y == 0) return;
     if (material_.alpha_x == material_.alpha_y)

@@ -40,11 +40,12 @@ bool same_pixels(const Image& a, const Image& b) {
   return a.width == b.width && a.height == b.height && a.rgb == b.rgb;
 }
 
-// Whether the file that the image is called after still holds its pixels, so that it can be copied.
-bool is_file(const Image& image) {
+// Whether the file that the image is called after still holds its pixels if it is decoded so.
+bool is_file(const Image& image, const ImageEncoding& encoding) {
   Diagnostics ignored;
   Image read;
-  return fs::is_regular_file(image.name) && read_image(image.name, {}, read, ignored) && same_pixels(read, image);
+  return fs::is_regular_file(image.name) && read_image(image.name, {}, read, ignored, encoding) &&
+         same_pixels(read, image);
 }
 
 JsonText scene_text(WriteContext& context) {
@@ -54,6 +55,7 @@ JsonText scene_text(WriteContext& context) {
   JsonText root = JsonText::object().break_lines();
   root.add("metamer", JsonText::integer(1)).add("settings", std::move(settings));
   if (!context.spectra.definitions().empty()) root.add("spectra", context.spectra.definitions());
+  if (!context.texture_definitions.empty()) root.add("textures", context.texture_definitions);
   if (!materials.empty()) root.add("materials", std::move(materials));
   if (!context.mesh_definitions.empty()) root.add("meshes", context.mesh_definitions);
   return root.add("entities", std::move(entities));
@@ -113,15 +115,17 @@ std::string WriteContext::mesh_name(MeshId id) {
   return mesh_names[id] = name;
 }
 
-std::string WriteContext::image_path(ImageId id) {
-  const auto known = image_files.find(id);
-  if (known != image_files.end()) return known->second;
+// A copy where that can be, else (generated images, other encodings) the pixels in an EXR.
+const ImageFile& WriteContext::image_file(ImageId id) {
+  for (const ImageFile& known : images)
+    if (known.id == id) return known;
   const Image& image = scene.images[id];
-  const bool is_copy = is_file(image);
+  const bool is_srgb = is_file(image, {}), is_linear = !is_srgb && is_file(image, {.gamma = 1});
+  const bool is_copy = is_srgb || is_linear;
   const std::string ending = is_copy ? file_extension(image.name) : "exr";
   const std::string name = file_names.take(file_stem(image.name, "image")) + "." + ending;
-  images.push_back({id, name, is_copy});
-  return image_files[id] = folder + "/" + name;
+  images.push_back({id, name, is_copy, is_linear});
+  return images.back();
 }
 
 FileError check_native_target(const std::string& path) {

@@ -35,7 +35,8 @@ struct MeshFile {
 struct ImageFile {
   ImageId id;
   std::string name;
-  bool is_copy;  // of the file that the image was read from
+  bool is_copy;            // of the file that the image was read from
+  bool is_linear = false;  // a copy whose integers were not encoded in sRGB
 };
 
 struct WriteContext {
@@ -48,14 +49,17 @@ struct WriteContext {
   std::vector<std::string> material_names, names;  // by entity index; empty: none
   JsonText mesh_definitions = JsonText::object().break_lines();
   std::map<MeshId, std::string> mesh_names;  // those that were asked for
-  std::map<ImageId, std::string> image_files;
+  JsonText texture_definitions = JsonText::object().break_lines();
+  std::map<TextureId, std::string> texture_names;
   std::vector<MeshFile> meshes;
   std::vector<ImageFile> images;
   std::vector<std::string> mistakes;  // what the format cannot say
 
-  // The name of a mesh in "meshes", the path of an image: both become side files.
+  // The name of a mesh in "meshes", the file of an image: both become side files.
   std::string mesh_name(MeshId id);
-  std::string image_path(ImageId id);
+  const ImageFile& image_file(ImageId id);
+  // What stands where the texture is used: {"texture": name}. It goes to the file's "textures".
+  JsonText texture(TextureId id);
 };
 
 // Only what differs from the format's defaults.

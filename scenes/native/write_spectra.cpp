@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "engine/spectrum/named_spectra.h"
+#include "engine/spectrum/rgb_fit.h"
 
 namespace metamer {
 namespace {
@@ -37,7 +38,40 @@ const std::map<std::string, BuiltIn>& built_in_tables() {
   return tables;
 }
 
+// x to that many decimals, and as the JSON says it.
+double rounded(double x, int decimals, std::string& text) {
+  text = fmt::format("{}", std::strtod(fmt::format("{:.{}f}", x, decimals).c_str(), nullptr));
+  return std::strtod(text.c_str(), nullptr);
+}
+
+bool is_fit(const SpectrumRow& row, ColorSpace space, const Color3& rgb) {
+  for (const double channel : rgb)
+    if (!(channel >= 0 && channel <= 1)) return false;
+  const SigmoidCoefficients c = fit_sigmoid(space, rgb).c;
+  return static_cast<float>(c[0]) == row.c0 && static_cast<float>(c[1]) == row.c1 && static_cast<float>(c[2]) == row.c2;
+}
+
 }  // namespace
+
+JsonText SpectrumWriter::write_reflectance(SpectrumId id) {
+  const SpectrumRow& row = set_.row(id);
+  if (row.table != 0 || row.scale != 1 || set_.is_constant(id)) return write(id);
+  for (size_t space = 0; space < color_space_count; ++space) {
+    const Color3 exact = sigmoid_rgb(static_cast<ColorSpace>(space), {row.c0, row.c1, row.c2});
+    for (int decimals = 1; decimals <= 6; ++decimals) {
+      Color3 rgb;
+      std::array<std::string, 3> texts;
+      for (size_t c = 0; c < 3; ++c) rgb[c] = rounded(exact[c], decimals, texts[c]);
+      if (!is_fit(row, static_cast<ColorSpace>(space), rgb)) continue;
+      JsonText numbers = JsonText::array();
+      for (const std::string& text : texts) numbers.add(JsonText::decimal(text));
+      JsonText object = JsonText::object().add("rgb", std::move(numbers));
+      if (space != 0) object.add("space", JsonText::string(color_space_names()[space]));
+      return object;
+    }
+  }
+  return write(id);
+}
 
 // Samples are read as they are where the largest is from 1/2 to below 1, see SpectrumSet::store_table; a table whose
 // largest was rounded up to 1 is halved, which changes no product.

@@ -15,6 +15,8 @@ class SpectrumWriter {
   explicit SpectrumWriter(const SpectrumSet& set) : set_(set) {}
 
   JsonText write(SpectrumId id);
+  // Where an rgb of up to six decimals is a reflectance of exactly this spectrum, that; else as above.
+  JsonText write_reflectance(SpectrumId id);
   // All that was written so far refers to; empty if to nothing.
   const JsonText& definitions() const { return definitions_; }
 

@@ -1,4 +1,5 @@
 // What the writer says, and that nothing is lost.
+#include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -27,7 +28,7 @@ TEST(NativeWriter, KnowsEveryFieldThatASceneHas) {
   EXPECT_EQ(field_count<Transform>, 3u);
   EXPECT_EQ(field_count<Parent>, 1u);
   EXPECT_EQ(field_count<Geometry>, 8u);
-  EXPECT_EQ(field_count<Material>, 14u);
+  EXPECT_EQ(field_count<Material>, 15u);
   EXPECT_EQ(field_count<MaterialSlot>, 1u);
   EXPECT_EQ(field_count<Light>, 10u);
   EXPECT_EQ(field_count<Camera>, 6u);
@@ -39,7 +40,9 @@ TEST(NativeWriter, KnowsEveryFieldThatASceneHas) {
   EXPECT_EQ(sizeof(Filter), 16u);
   const auto [name, width, height, rgb, mapping, color_space] = Image{};
   const auto [mesh_name, positions, normals, uvs, indices] = Mesh{};
-  const auto [registry, spectra, meshes, images, names, settings] = Scene{};
+  const auto [registry, spectra, meshes, images, textures, scene_names, settings] = Scene{};
+  const auto [kind, spectrum, value, is_number, image, wrap, nearest, invert, scale, uv, a, b, amount] = Texture{};
+  const auto [u_scale, v_scale, u_offset, v_offset] = UvMapping{};
 }
 
 double through_double(float value) { return std::strtod(number_text(value).c_str(), nullptr); }
@@ -149,6 +152,22 @@ TEST(NativeWriter, BuiltInSpectraKeepTheirNames) {
   EXPECT_EQ(text.find("samples\": ["), std::string::npos);
 }
 
+TEST(NativeWriter, ReflectancesOfFewDecimalsAreRgbAgain) {
+  const ReadScene read = read_world(
+      "Material \"diffuse\" \"rgb reflectance\" [0.63 0.065 0.05] Shape \"sphere\"\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.712345 0.3 1] Shape \"sphere\"\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.1234567891 0.2 0.3] Shape \"sphere\"\n"
+      "ColorSpace \"rec2020\" Material \"diffuse\" \"rgb reflectance\" [0.8 0.3 0.2] Shape \"sphere\"\n");
+  const TemporaryFolder folder;
+  write_scene(read.scene, folder.path());
+  const std::string text = files_in(folder.path()).at("scene.json");
+  EXPECT_THAT(text, HasSubstr(R"("reflectance": { "rgb": [0.63, 0.065, 0.05] })"));
+  EXPECT_THAT(text, HasSubstr(R"("reflectance": { "rgb": [0.712345, 0.3, 1] })"));
+  EXPECT_THAT(text, HasSubstr(R"("reflectance": { "sigmoid": [)"));
+  EXPECT_THAT(text, HasSubstr(R"("reflectance": { "rgb": [0.8, 0.3, 0.2], "space": "rec2020" })"));
+  expect_converts(read.scene);
+}
+
 TEST(NativeWriter, SettingsAndCameraAreKept) {
   const ReadScene read = read_text(R"(
     Film "rgb" "integer xresolution" 33 "integer yresolution" 21 "float iso" 250
@@ -176,6 +195,54 @@ TEST(NativeWriter, SettingsAndCameraAreKept) {
   EXPECT_EQ(camera.focal_distance, 3);
   const Transform a = read.get<Transform>(), b = back.registry.get<Transform>(back.registry.table<Camera>().owner(0));
   EXPECT_EQ(std::memcmp(&a, &b, sizeof(a)), 0);
+  expect_converts(read.scene);
+}
+
+std::string image_file(const TemporaryFolder& folder, const std::string& name, bool is_float) {
+  const std::string path = (folder.path() / name).string();
+  const auto output = OIIO::ImageOutput::create(path);
+  const OIIO::ImageSpec spec(4, 2, 3, is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
+  std::vector<float> pixels;
+  for (int i = 0; i < 24; ++i) pixels.push_back(float(i) / 31);
+  EXPECT_TRUE(output->open(path, spec) && output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) && output->close());
+  return path;
+}
+
+TEST(NativeWriter, TexturesAreKeptAndTheirImagesCopied) {
+  const TemporaryFolder images;
+  const std::string png = image_file(images, "wood.png", false), exr = image_file(images, "wood.exr", true);
+  const ReadScene read = read_world(
+      "LightSource \"infinite\"\n"
+      "Texture \"wood\" \"spectrum\" \"imagemap\" \"string filename\" \"" +
+      png +
+      "\" \"string wrap\" \"clamp\"\n"
+      "Texture \"raw\" \"spectrum\" \"imagemap\" \"string filename\" \"" +
+      png +
+      "\" \"string encoding\" \"linear\"\n"
+      "Texture \"odd\" \"spectrum\" \"imagemap\" \"string filename\" \"" +
+      png +
+      "\" \"string encoding\" \"gamma 1.7\"\n"
+      "Texture \"half\" \"float\" \"imagemap\" \"string filename\" \"" +
+      exr +
+      "\" \"string filter\" \"point\"\n"
+      "Texture \"mixed\" \"spectrum\" \"mix\" \"texture tex1\" \"wood\" \"texture tex2\" \"odd\" \"texture amount\" "
+      "\"half\"\n"
+      "Texture \"board\" \"spectrum\" \"checkerboard\" \"texture tex1\" \"mixed\" \"texture tex2\" \"raw\"\n"
+      "  \"float uscale\" 3 \"float vdelta\" 0.5\n"
+      "Texture \"all\" \"spectrum\" \"scale\" \"texture tex\" \"board\" \"float scale\" 0.9\n"
+      "Material \"diffuse\" \"texture reflectance\" \"all\" Translate 0 0 3 Shape \"sphere\"\n"
+      "Material \"coateddiffuse\" \"texture reflectance\" \"wood\" Translate 1 0 0 Shape \"sphere\"\n");
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  ASSERT_NE(tiny_film(read.scene), nullptr);
+  const TemporaryFolder folder;
+  write_scene(read.scene, folder.path());
+  const auto files = files_in(folder.path());
+  const auto original = files_in(images.path());
+  EXPECT_EQ(files.size(), 5u);
+  EXPECT_TRUE(files.at("scene-files/wood.png") == original.at("wood.png"));
+  EXPECT_TRUE(files.contains("scene-files/wood-2.exr")) << "of an encoding that is not tried: its pixels";
+  EXPECT_TRUE(files.at("scene-files/wood-3.exr") == original.at("wood.exr"));
+  EXPECT_TRUE(files.at("scene-files/wood-4.png") == original.at("wood.png")) << "linear";
   expect_converts(read.scene);
 }
 
