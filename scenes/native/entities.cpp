@@ -187,20 +187,18 @@ void read_materials(SceneContext& context, const Json::Value& materials) {
     return;
   }
   // Names first, so that materials may be mixed of any others.
+  const auto members = members_in_order(materials);
   std::vector<Entity> entities;
-  for (auto it = materials.begin(); it != materials.end(); ++it) {
+  for (const auto& [name, value] : members) {
     const Entity entity = context.scene.registry.create();
     entities.push_back(entity);
-    if (is_repeated_key(it.name())) continue;
-    context.scene.registry.set(entity, Source{context.file, context.reader.document().at_key(*it).line});
-    name_entity(context, entity, it.name(), *it, true);
+    context.scene.registry.set(entity, Source{context.file, context.reader.document().at_key(*value).line});
+    name_entity(context, entity, name, *value, true);
   }
-  size_t at = 0;
-  for (auto it = materials.begin(); it != materials.end(); ++it, ++at) {
-    if (is_repeated_key(it.name())) continue;
-    const Entity entity = entities[at];
-    context.reader.set_subject(fmt::format("material '{}'", printable_text(it.name())));
-    if (const auto material = read_material(context, *it)) context.scene.registry.set(entity, *material);
+  for (size_t i = 0; i < members.size(); ++i) {
+    const auto& [name, value] = members[i];
+    context.reader.set_subject(fmt::format("material '{}'", printable_text(name)));
+    if (const auto material = read_material(context, *value)) context.scene.registry.set(entities[i], *material);
     context.reader.set_subject({});
   }
 }

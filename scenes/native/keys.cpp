@@ -5,16 +5,24 @@ namespace {
 
 constexpr bool required = true;
 
-constexpr KeySpec scene[] = {{"$schema"}, {"metamer", required}, {"units"},  {"settings"},
-                             {"spectra"}, {"materials"},         {"meshes"}, {"entities", required}};
+constexpr KeySpec scene[] = {{"$schema"},  {"metamer", required}, {"units"},  {"settings"},          {"spectra"},
+                             {"textures"}, {"materials"},         {"meshes"}, {"entities", required}};
 constexpr KeySpec settings[] = {{"size"},    {"samples"}, {"max_depth"},    {"seed"},         {"integrator"},
                                 {"shadows"}, {"filter"},  {"exposure"},     {"sensor_scale"}, {"spectral"},
                                 {"color"},   {"crop"},    {"pixel_jitter"}, {"shutter"}};
 constexpr KeySpec filter_box[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_triangle[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_gaussian[] = {{"type", required}, {"radius"}, {"sigma"}};
-constexpr KeySpec spectrum[] = {{"constant"}, {"table"}, {"named"}, {"blackbody"},
-                                {"daylight"}, {"rgb"},   {"space"}, {"scale"}};
+constexpr KeySpec spectrum[] = {{"constant"}, {"table"}, {"named"},   {"blackbody"}, {"daylight"}, {"rgb"},
+                                {"space"},    {"scale"}, {"samples"}, {"sigmoid"},   {"times"}};
+constexpr KeySpec texture_reference[] = {{"texture", required}};
+constexpr KeySpec texture_constant[] = {{"type", required}, {"value", required}, {"number"}};
+constexpr KeySpec texture_image[] = {{"type", required}, {"image", required}, {"encoding"}, {"space"}, {"wrap"},
+                                     {"filter"},         {"scale"},           {"invert"},   {"uv"},    {"number"}};
+constexpr KeySpec texture_checkerboard[] = {{"type", required}, {"a"}, {"b"}, {"uv"}, {"number"}};
+constexpr KeySpec texture_scale[] = {{"type", required}, {"a", required}, {"b"}, {"number"}};
+constexpr KeySpec texture_mix[] = {{"type", required}, {"a", required}, {"b", required}, {"amount"}, {"number"}};
+constexpr KeySpec uv[] = {{"scale"}, {"offset"}};
 constexpr KeySpec material_diffuse[] = {{"type", required}, {"reflectance", required}};
 constexpr KeySpec material_rough[] = {{"type", required}, {"kd"}, {"ks"}, {"shininess"}, {"normalized"}};
 constexpr KeySpec material_coated[] = {{"type", required}, {"reflectance", required}, {"glass"}, {"eta"}, {"roughness"},
@@ -41,8 +49,8 @@ constexpr KeySpec geometry_mesh[] = {{"type", required}, {"mesh", required}, {"f
 constexpr KeySpec geometry_sphere[] = {{"type", required}, {"radius"}, {"flip_normal"}};
 constexpr KeySpec geometry_disk[] = {{"type", required}, {"radius"}, {"inner_radius"}, {"height"}, {"flip_normal"}};
 constexpr KeySpec geometry_rectangle[] = {{"type", required}, {"width"}, {"depth"}, {"flip_normal"}};
-constexpr KeySpec light_area[] = {{"type", required}, {"radiance"},     {"luminance"}, {"nits"},     {"lumens"},
-                                  {"spectrum"},       {"cosine_power"}, {"scale"},     {"two_sided"}};
+constexpr KeySpec light_area[] = {{"type", required}, {"radiance"},     {"luminance"}, {"nits"},      {"lumens"},
+                                  {"spectrum"},       {"cosine_power"}, {"scale"},     {"two_sided"}, {"power"}};
 constexpr KeySpec light_point[] = {{"type", required}, {"intensity"}, {"candela"}, {"lumens"}, {"spectrum"}, {"scale"}};
 constexpr KeySpec light_spot[] = {{"type", required}, {"intensity"},  {"candela"},       {"lumens"},
                                   {"spectrum"},       {"cone_angle"}, {"falloff_start"}, {"scale"}};
@@ -67,6 +75,13 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"filter.triangle", filter_triangle},
                                 {"filter.gaussian", filter_gaussian},
                                 {"spectrum", spectrum},
+                                {"texture_reference", texture_reference},
+                                {"texture.constant", texture_constant},
+                                {"texture.image", texture_image},
+                                {"texture.checkerboard", texture_checkerboard},
+                                {"texture.scale", texture_scale},
+                                {"texture.mix", texture_mix},
+                                {"uv", uv},
                                 {"material.diffuse", material_diffuse},
                                 {"material.rough", material_rough},
                                 {"material.coated", material_coated},

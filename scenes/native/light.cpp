@@ -19,14 +19,15 @@ struct Photometry {
 };
 struct Brightness {
   std::string_view type, radiometric;
+  std::string_view radiometric_total;     // of the whole shape; may be none
   std::array<Photometry, 3> photometric;  // those without a key are none
 };
 constexpr Brightness brightnesses[] = {
-    {"area", "radiance", {{{"luminance", 1}, {"nits", 1}, {"lumens", 1}}}},  // lumens: see Light::is_power
-    {"environment", "radiance", {{{"luminance", 1}, {"nits", 1}, {}}}},
-    {"point", "intensity", {{{"candela", 1}, {"lumens", 1 / (4 * std::numbers::pi)}, {}}}},
-    {"spot", "intensity", {{{"candela", 1}, {"lumens", 1}, {}}}},  // lumens: divided by the cone's flux
-    {"directional", "irradiance", {{{"lux", 1}, {}, {}}}},
+    {"area", "radiance", "power", {{{"luminance", 1}, {"nits", 1}, {"lumens", 1}}}},  // see Light::is_power
+    {"environment", "radiance", "", {{{"luminance", 1}, {"nits", 1}, {}}}},
+    {"point", "intensity", "", {{{"candela", 1}, {"lumens", 1 / (4 * std::numbers::pi)}, {}}}},
+    {"spot", "intensity", "", {{{"candela", 1}, {"lumens", 1}, {}}}},  // lumens: divided by the cone's flux
+    {"directional", "irradiance", "", {{{"lux", 1}, {}, {}}}},
 };
 
 const Brightness& brightness_of(std::string_view type) {
@@ -56,16 +57,18 @@ SpectrumId read_brightness(SceneContext& context, const JsonObject& object, Colo
   std::vector<std::string_view> keys = {ways.radiometric};
   for (const Photometry& photometry : ways.photometric)
     if (!photometry.key.empty()) keys.push_back(photometry.key);
+  const std::string_view first_photometric = keys[1];
+  if (!ways.radiometric_total.empty()) keys.push_back(ways.radiometric_total);
   const bool is_image = object.type() == "environment" && object.has("image");
   bool has_any = false;
   for (const std::string_view key : keys) has_any = has_any || object.has(key);
   const Json::Value* shape = object.find("spectrum");
   const std::string_view way = is_image && !has_any ? std::string_view() : object.one_of(keys);
-  if (way.empty() || way == ways.radiometric) {
+  if (way.empty() || way == ways.radiometric || way == ways.radiometric_total) {
     if (shape != nullptr)
-      context.reader.error(
-          *shape, fmt::format("'spectrum' is the shape for '{}'; a spectrum in absolute units goes to '{}'", keys[1],
-                              ways.radiometric));
+      context.reader.error(*shape,
+                           fmt::format("'spectrum' is the shape for '{}'; a spectrum in absolute units goes to '{}'",
+                                       first_photometric, way.empty() ? ways.radiometric : way));
     return way.empty() ? white_of(context, space) : read_spectrum(context, *object.find(way), way, Quantity::light);
   }
   double per_unit = 1;
@@ -105,8 +108,8 @@ void read_environment_image(SceneContext& context, const JsonObject& object, Col
 
 // Half angles in degrees. Where the falloff starts is Mitsuba's default, three quarters of the cone.
 void read_cone(const JsonReader& reader, const JsonObject& object, Light& light) {
-  light.cone_deg = object.number_f("cone_angle", {0, 90, true, false}, 30);
-  light.falloff_deg = object.number_f("falloff_start", {0, 90}, 0.75f * light.cone_deg);
+  light.cone_deg = object.number_f("cone_angle", {0, 180, true, false}, 30);
+  light.falloff_deg = object.number_f("falloff_start", {0, 180}, 0.75f * light.cone_deg);
   if (light.falloff_deg <= light.cone_deg) return;
   reader.error(*object.find("falloff_start"),
                fmt::format("'falloff_start' is {:g}; expected at most the 'cone_angle', {:g}", light.falloff_deg,
@@ -128,7 +131,7 @@ void read_light(SceneContext& context, Entity entity, const Json::Value& value) 
     light.kind = LightKind::area;
     light.two_sided = object.boolean("two_sided", false) ? 1 : 0;
     light.cosine_power = object.number_f("cosine_power", {0, 1e6}, 0);
-    light.is_power = object.has("lumens") ? 1 : 0;
+    light.is_power = object.has("lumens") || object.has("power") ? 1 : 0;
   } else if (object.type() == "point") {
     light.kind = LightKind::point;
   } else if (object.type() == "spot") {

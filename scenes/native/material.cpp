@@ -17,12 +17,22 @@ void read_roughness(const SceneContext& context, const JsonObject& object, Mater
   if (value == nullptr) return;
   std::array<double, 2> alpha{};
   if (value->isArray()) {
-    context.reader.numbers(*value, "roughness", unit_interval, alpha);
+    context.reader.numbers(*value, "roughness", not_negative, alpha);
   } else {
-    alpha.fill(context.reader.number(*value, "roughness", unit_interval, 0));
+    alpha.fill(context.reader.number(*value, "roughness", not_negative, 0));
   }
   material.alpha_x = static_cast<float>(alpha[0]);
   material.alpha_y = static_cast<float>(alpha[1]);
+}
+
+// A spectrum, or a texture in its place.
+void read_reflectance(SceneContext& context, const JsonObject& object, Material& material) {
+  const Json::Value* value = object.find("reflectance");
+  if (value == nullptr) return;  // reported
+  if (is_texture(*value))
+    material.reflectance_texture = read_texture_reference(context, *value, false).value_or(no_index);
+  else
+    material.reflectance = read_spectrum(context, *value, "reflectance", Quantity::reflectance);
 }
 
 // Both terms may be left out; the glossy one needs its exponent.
@@ -105,13 +115,12 @@ Material mirror(SpectrumSet& spectra) {
 }
 
 void read_coated(SceneContext& context, const JsonObject& object, Material& material) {
-  if (object.has("reflectance"))
-    material.reflectance = read_spectrum(context, *object.find("reflectance"), "reflectance", Quantity::reflectance);
+  read_reflectance(context, object, material);
   constexpr std::string_view ways[] = {"glass", "eta"};
   const std::string_view way = object.one_of(ways);
   if (way == "glass") material.eta = read_glass(context, *object.find("glass"));
   if (way == "eta") material.eta = read_spectrum(context, *object.find("eta"), "eta", Quantity::eta);
-  material.alpha_x = material.alpha_y = static_cast<float>(object.number("roughness", unit_interval, 0));
+  material.alpha_x = material.alpha_y = static_cast<float>(object.number("roughness", not_negative, 0));
 }
 
 void read_sheet(SceneContext& context, const JsonObject& object, Material& material) {
@@ -166,8 +175,7 @@ std::optional<Material> read_material(SceneContext& context, const Json::Value& 
   Material material;
   if (object.type() == "diffuse") {
     material.kind = MaterialKind::diffuse;
-    if (object.has("reflectance"))
-      material.reflectance = read_spectrum(context, *object.find("reflectance"), "reflectance", Quantity::reflectance);
+    read_reflectance(context, object, material);
     return material;
   }
   if (object.type() == "rough") {

@@ -22,6 +22,7 @@ void read_scene_object(SceneContext& context, const Json::Value& root) {
   context.metres_per_unit = metres[object.choice("units", units, 0)];
   if (const Json::Value* settings = object.find("settings")) context.scene.settings = read_settings(context, *settings);
   if (const Json::Value* spectra = object.find("spectra")) declare_spectra(context, *spectra);
+  if (const Json::Value* textures = object.find("textures")) read_textures(context, *textures);
   if (const Json::Value* meshes = object.find("meshes")) read_meshes(context, *meshes);
   if (const Json::Value* materials = object.find("materials")) read_materials(context, *materials);
   if (const Json::Value* entities = object.find("entities")) read_entities(context, *entities);

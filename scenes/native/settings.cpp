@@ -8,8 +8,6 @@
 namespace metamer {
 namespace {
 
-constexpr Range filter_radius{0.5, 16};  // pixels; below 0.5 parts of the picture would be seen by no pixel
-
 Filter read_filter(const SceneContext& context, const Json::Value& value) {
   const JsonObject object(context.reader, value, "filter");
   if (!object.is_valid()) return {};
@@ -21,14 +19,13 @@ Filter read_filter(const SceneContext& context, const Json::Value& value) {
   std::array<double, 2> radius{usual, usual};
   if (const Json::Value* given = object.find("radius")) {
     if (given->isArray())
-      context.reader.numbers(*given, "radius", filter_radius, radius);
+      context.reader.numbers(*given, "radius", positive, radius);
     else
-      radius.fill(context.reader.number(*given, "radius", filter_radius, usual));
+      radius.fill(context.reader.number(*given, "radius", positive, usual));
   }
   filter.radius_x = static_cast<float>(radius[0]);
   filter.radius_y = static_cast<float>(radius[1]);
-  constexpr Range sigma{0.01, 16};
-  if (filter.kind == FilterKind::gaussian) filter.sigma = object.number_f("sigma", sigma, filter.sigma);
+  if (filter.kind == FilterKind::gaussian) filter.sigma = object.number_f("sigma", positive, filter.sigma);
   return filter;
 }
 
@@ -57,7 +54,7 @@ RenderSettings read_settings(const SceneContext& context, const Json::Value& val
   RenderSettings settings;
   if (!object.is_valid()) return settings;
   if (const Json::Value* size = object.find("size")) {
-    constexpr uint32_t most = 65536;  // pixels along a side
+    constexpr uint32_t most = 1u << 20;  // pixels along a side
     if (size->isArray() && size->size() == 2) {
       settings.width = reader.integer((*size)[0], "size[0]", 1, most, settings.width);
       settings.height = reader.integer((*size)[1], "size[1]", 1, most, settings.height);
@@ -67,7 +64,7 @@ RenderSettings read_settings(const SceneContext& context, const Json::Value& val
   }
   constexpr Range stops{-64, 64};
   settings.samples_per_pixel = object.integer("samples", 1, 1u << 30, settings.samples_per_pixel);
-  settings.max_depth = object.integer("max_depth", 0, 1u << 16, settings.max_depth);
+  settings.max_depth = object.integer("max_depth", 0, 0xffffffffu, settings.max_depth);
   settings.integrator =
       static_cast<Integrator>(object.choice("integrator", integrator_names, static_cast<size_t>(settings.integrator)));
   settings.shadows = object.boolean("shadows", settings.shadows);

@@ -161,7 +161,8 @@ Transform read_transform(const SceneContext& context, const Json::Value* value) 
   bool is_good = true;
   for (Json::ArrayIndex i = 0; i < (is_list ? value->size() : 1); ++i) {
     const Json::Value& item = is_list ? (*value)[i] : *value;
-    total = read_operation(context, item) * total;
+    const glm::dmat4 operation = read_operation(context, item);
+    total = i == 0 ? operation : operation * total;  // a product would turn -0 into 0
     is_good = is_good && check_invertible(context, item, total);
   }
   return reader.diagnostics().error_count() == errors_before ? to_component(total) : Transform{};

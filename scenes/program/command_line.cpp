@@ -27,6 +27,7 @@ constexpr const char* main_footer = R"(Examples:
   metamer develop cornell-box.exr -o look.png --tonemap agx --exposure auto
   metamer match 500 -o match.png                   the amounts of three lamps that look like 500 nm
   metamer compare cornell-box.json                 what RGB rendering gets wrong
+  metamer convert kitchen/scene.pbrt kitchen.json
   metamer info kitchen.json
   metamer render --help                            all flags of a command
 
@@ -144,10 +145,11 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
 }
 
 std::string unknown_command(const std::string& word) {
-  return fmt::format("unknown command '{}'{}; there are render, develop, match, metamers, compare, sky and info", word,
-                     word.find('.') != std::string::npos
-                         ? fmt::format(" (did you mean 'metamer render {}'?)", word)
-                         : suggestion(word, {"render", "develop", "match", "metamers", "compare", "sky", "info"}));
+  return fmt::format(
+      "unknown command '{}'{}; there are render, develop, match, metamers, compare, sky, convert and info", word,
+      word.find('.') != std::string::npos
+          ? fmt::format(" (did you mean 'metamer render {}'?)", word)
+          : suggestion(word, {"render", "develop", "match", "metamers", "compare", "sky", "convert", "info"}));
 }
 
 // The argument without a flag, and what it names.
@@ -176,7 +178,7 @@ void note_extras(const CLI::App& app, const CLI::App* command, Mistakes& mistake
   if (has_unknown_flag || unexpected.empty()) return;
   if (command == nullptr)
     mistakes.push_back(unknown_command(unexpected));
-  else if (command->get_name() == "compare")
+  else if (command->get_name() == "compare" || command->get_name() == "convert")
     mistakes.push_back(fmt::format("unexpected argument '{}'", unexpected));
   else if (command->get_name() == "sky")
     mistakes.push_back(fmt::format("unexpected argument '{}': sky takes flags only", unexpected));
@@ -293,6 +295,8 @@ Command parse_command_line(int argc, char** argv) {
   SkyArguments sky_arguments;
   SkyTexts sky_texts;
   add_sky(app, sky_arguments, sky_texts);
+  ConvertArguments convert_arguments;
+  add_convert(app, convert_arguments);
   add_info(app, info_arguments);
   for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
   try {
@@ -321,19 +325,21 @@ Command parse_command_line(int argc, char** argv) {
     parse_metamers(*command, metamers_texts, metamers_arguments, mistakes);
   if (command != nullptr && command->get_name() == "compare")
     parse_compare(*command, compare_texts, compare_arguments, mistakes);
+  if (command != nullptr && command->get_name() == "convert") parse_convert(convert_arguments, mistakes);
   if (command != nullptr && command->get_name() == "sky") parse_sky(*command, sky_texts, sky_arguments, mistakes);
   fail_if_any(mistakes);
   if (wants_version) return ShowVersion{};
   if (command == nullptr)
-    throw Failure(
-        exit_wrong_input,
-        "a command was expected: render, develop, match, metamers, compare, sky or info (metamer --help says more)");
+    throw Failure(exit_wrong_input,
+                  "a command was expected: render, develop, match, metamers, compare, sky, convert or info (metamer "
+                  "--help says more)");
   if (command->get_name() == "render") return render_arguments;
   if (command->get_name() == "develop") return develop_arguments;
   if (command->get_name() == "match") return match_arguments;
   if (command->get_name() == "metamers") return metamers_arguments;
   if (command->get_name() == "compare") return compare_arguments;
   if (command->get_name() == "sky") return sky_arguments;
+  if (command->get_name() == "convert") return convert_arguments;
   return info_arguments;
 }
 

@@ -7,6 +7,7 @@
 
 #include "engine/ecs/scene.h"
 #include "scenes/program/compare_arguments.h"
+#include "scenes/program/convert_arguments.h"
 #include "scenes/program/match_arguments.h"
 #include "scenes/program/sky_arguments.h"
 #include "systems/write_frame.h"
@@ -60,7 +61,7 @@ struct ShowText {
 };
 
 using Command = std::variant<RenderArguments, DevelopArguments, MatchArguments, MetamersArguments, CompareArguments,
-                             SkyArguments, InfoArguments, ShowVersion, ShowText>;
+                             SkyArguments, ConvertArguments, InfoArguments, ShowVersion, ShowText>;
 
 // Throws Failure (exit 2) with a line for each mistake.
 Command parse_command_line(int argc, char** argv);

@@ -23,11 +23,14 @@ TEST(NativeLightMistakes, AreNamedWithWhatWasExpected) {
             "scene.json:2: error: 'cosine_power' is the number -1; expected a number from 0 to 1000000\n");
   EXPECT_EQ(messages_of_light(R"("type": "area", "nits": 3, "lumens": 1)"),
             "scene.json:2: error: 'nits' and 'lumens' exclude each other\n");
-  EXPECT_EQ(messages_of_light(R"("type": "spot", "candela": -3, "cone_angle": 91)"),
-            "scene.json:2: error: 'cone_angle' is the number 91; expected a number above 0 and of at most 90\n"
+  EXPECT_EQ(messages_of_light(R"("type": "area", "power": 3, "spectrum": "D65")"),
+            "scene.json:2: error: 'spectrum' is the shape for 'luminance'; a spectrum in absolute units goes to "
+            "'power'\n");
+  EXPECT_EQ(messages_of_light(R"("type": "spot", "candela": -3, "cone_angle": 181)"),
+            "scene.json:2: error: 'cone_angle' is the number 181; expected a number above 0 and of at most 180\n"
             "scene.json:2: error: 'candela' is the number -3; expected a number of at least 0\n");
   EXPECT_EQ(messages_of_light(R"("type": "spot", "candela": 3, "cone_angle": 0)"),
-            "scene.json:2: error: 'cone_angle' is the number 0; expected a number above 0 and of at most 90\n");
+            "scene.json:2: error: 'cone_angle' is the number 0; expected a number above 0 and of at most 180\n");
   EXPECT_EQ(messages_of_light(R"("type": "spot", "candela": 3, "cone_angle": 20, "falloff_start": 21)"),
             "scene.json:2: error: 'falloff_start' is 21; expected at most the 'cone_angle', 20\n");
   EXPECT_THAT(messages_of_light(R"("type": "spt", "candela": 3)"), HasSubstr("did you mean 'spot'"));
