@@ -31,9 +31,8 @@ void build_textures(const Scene& scene, World& world, Diagnostics& diagnostics);
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
                     World& world, Diagnostics& diagnostics);
 
-// The environment's image (null: none) as columns of spectra, or of the mode's coefficients, and a density, and its
-// rotation.
-void build_environment(const Image* image, const glm::dmat4& to_world, ColorMode color, Environment& environment);
+// An environment's rotation and the density of the directions of its image (null: none).
+void build_environment(const Image* image, const glm::dmat4& to_world, Environment& environment);
 
 // Lights that are no shapes (see light_rows.h), then the choice among all lights by power.
 void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics);

@@ -18,7 +18,7 @@ namespace {
 struct LightSample {
   Vec3 direction;
   VF distance, pdf, weight;
-  VF image_u, image_v;  // environment only
+  VF image_u, image_v;  // only of lights with an image
 };
 
 // Uniform over the shape's area; works for a reference point anywhere.
@@ -98,6 +98,16 @@ HWY_INLINE void sample_spot(const LightFields& light, const Vec3& from, LightSam
   sample.weight = hn::Mul(sample.weight, spot_falloff(light, -sample.direction));
 }
 
+HWY_INLINE void sample_image_light(const LightFields& light, VU shape, const Vec3& from, LightSample& sample) {
+  sample_point_light(light, from, sample);
+  const LightImagePoint sphere = goniometric_point(light, -sample.direction);
+  const LightImagePoint window = projection_point(light, -sample.direction);
+  const MF throws = is_shape(shape, LightShape::projection);
+  sample.image_u = hn::IfThenElse(throws, window.u, sphere.u);
+  sample.image_v = hn::IfThenElse(throws, window.v, sphere.v);
+  sample.weight = hn::IfThenZeroElse(hn::AndNot(window.inside, throws), sample.weight);
+}
+
 // Uniform in the disc's solid angle.
 HWY_INLINE void sample_distant_disk(const LightFields& light, VF u, VF v, LightSample& sample) {
   const VF half = light.number(offsetof(LightRow, axes));
@@ -114,22 +124,18 @@ HWY_INLINE void sample_directional(const LightFields& light, LightSample& sample
   sample.weight = splat(1.0f);
 }
 
-HWY_INLINE void sample_environment(const Environment& environment, VF u, VF v, LightSample& sample) {
-  Vec3 local;
-  if (environment.width == 0) {
-    local = sample_uniform_sphere(u, v);
-    sample.pdf = splat(uniform_sphere_pdf);
-  } else {
-    VF solid_angle = splat(4 * pi);
-    const SquareSampleV square = sample_square(environment.density, u, v);
-    sample.image_u = square.x;
-    sample.image_v = square.y;
-    local = environment.mapping == ImageMapping::equal_area
-                ? equal_area_direction(sample.image_u, sample.image_v)
-                : latitude_longitude_direction(sample.image_u, sample.image_v, &solid_angle);
-    sample.pdf = hn::Div(square.pdf, hn::Max(solid_angle, splat(1e-20f)));
+HWY_INLINE void sample_environments(const World& world, const LightFields& light, const Vec3& from, VF u, VF v,
+                                    LightSample& sample) {
+  for (const Environment& environment : world.environments) {
+    const VI row = hn::Set(IntTag(), static_cast<int>(environment.light));
+    const MF chosen = hn::RebindMask(FloatTag(), hn::Eq(light.light, row));
+    if (hn::AllFalse(FloatTag(), chosen)) continue;
+    const EnvironmentSample drawn = sample_environment(environment, from, u, v);
+    sample.direction = if_then_else(chosen, drawn.direction, sample.direction);
+    sample.pdf = hn::IfThenElse(chosen, drawn.pdf, sample.pdf);
+    sample.image_u = hn::IfThenElse(chosen, drawn.image_u, sample.image_u);
+    sample.image_v = hn::IfThenElse(chosen, drawn.image_v, sample.image_v);
   }
-  sample.direction = rotate(environment.to_world, local);
   sample.distance = hn::Inf(FloatTag());
   sample.weight = hn::IfThenElseZero(hn::Gt(sample.pdf, hn::Zero(FloatTag())), hn::Div(splat(1.0f), sample.pdf));
 }
@@ -163,6 +169,11 @@ HWY_INLINE LightSample sample_light(const World& world, const LightFields& light
     sample_spot(light, from, other);
     sample = select(spot, other, sample);
   }
+  const MF image = hn::Or(is_shape(shape, LightShape::goniometric), is_shape(shape, LightShape::projection));
+  if (!hn::AllFalse(d, image)) {
+    sample_image_light(light, shape, from, other);
+    sample = select(image, other, sample);
+  }
   const MF distant_disk = is_shape(shape, LightShape::distant_disk);
   if (!hn::AllFalse(d, distant_disk)) {
     sample_distant_disk(light, u, v, other);
@@ -175,7 +186,7 @@ HWY_INLINE LightSample sample_light(const World& world, const LightFields& light
   }
   const MF environment = is_shape(shape, LightShape::environment);
   if (!hn::AllFalse(d, environment)) {
-    sample_environment(world.environment, u, v, other);
+    sample_environments(world, light, from, u, v, other);
     sample = select(environment, other, sample);
   }
   return sample;
@@ -187,11 +198,14 @@ HWY_INLINE void store_light_sample(const World& world, const LightFields& light,
   VF lambda_nm[4], radiance[4];
   load(shade.lambda_nm, i, lambda_nm);
   light_spectrum(world, light, lambda_nm, radiance);
-  if (world.environment.width > 0) {
+  if (!world.light_images.rows.empty()) {
+    const VU image = gather(world.image_of_light.data(), light.light);
+    const auto has_image = hn::Ne(image, splat_u(no_index));
     VF factor[4];
-    environment_image(world.environment, sample.image_u, sample.image_v, lambda_nm, factor);
-    const MF image = is_shape(light.word(offsetof(LightRow, shape)), LightShape::environment);
-    for (int j = 0; j < 4; ++j) radiance[j] = hn::IfThenElse(image, hn::Mul(radiance[j], factor[j]), radiance[j]);
+    light_image(world.light_images, as_index(hn::IfThenElseZero(has_image, image)), sample.image_u, sample.image_v,
+                lambda_nm, factor);
+    for (VF& value : factor) value = hn::IfThenElse(float_mask(has_image), value, splat(1.0f));
+    for (int j = 0; j < 4; ++j) radiance[j] = hn::Mul(radiance[j], factor[j]);
   }
   const VF weight = hn::Div(sample.weight, probability);
   for (int j = 0; j < 4; ++j) radiance[j] = hn::Mul(radiance[j], weight);

@@ -117,7 +117,7 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
   const Vec3 reach = max(max(abs(p[0]), abs(p[1])), abs(p[2]));
   surface.offset = hn::MulAdd(splat(2 * eps), dot(abs(surface.normal), reach), surface.offset);
 
-  if (world.needs_tangents || world.has_textures()) {
+  if (world.needs_tangents || world.needs_uvs()) {
     VF u[3], v[3];
     for (int k = 0; k < 3; ++k) {
       const VI at = hn::Add(vertex[k], vertex[k]);
@@ -180,7 +180,7 @@ HWY_INLINE Surface quadric_surface(const World& world, const Vec3& origin, const
   const Vec3 along = {hn::Neg(local.y), local.x, zero};
   const MF pole = hn::Eq(hn::Add(hn::Abs(local.x), hn::Abs(local.y)), zero);
   surface.tangent = transform_vector(m, if_then_else(pole, Vec3{one, zero, zero}, along));
-  if (world.has_textures()) quadric_uv(local, radius, gather(&first.inner_radius, base), sphere, surface);
+  if (world.needs_uvs()) quadric_uv(local, radius, gather(&first.inner_radius, base), sphere, surface);
   return surface;
 }
 
@@ -212,7 +212,10 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     // Dead lanes look at the batch's first path and are forgotten.
     const VI path = as_index(hn::IfThenElseZero(live_u, ordered));
     carry(paths, path, live, shade, i);
-    if (i >= miss_begin) continue;
+    if (i >= miss_begin) {
+      if (world.has_portals) store(gather(paths.origin, path), shade.position, i);
+      continue;
+    }
     const VU met = gather(hits.object, path);
     const VI object = as_index(hn::IfThenElseZero(hn::And(live_u, hn::Ne(met, splat_u(no_index))), met));
     const VU primitive = gather(hits.primitive, path);
@@ -243,7 +246,7 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     store(s.normal, shade.normal, i);
     store(s.shading_normal, shade.shading_normal, i);
     if (world.needs_tangents) store(s.tangent, shade.tangent, i);
-    if (world.has_textures()) {
+    if (world.needs_uvs()) {
       store(s.u, shade.uv[0], i);
       store(s.v, shade.uv[1], i);
     }

@@ -42,8 +42,12 @@ constexpr KeySpec light_spot[] = {{"type", required}, {"intensity"},  {"candela"
                                   {"spectrum"},       {"cone_angle"}, {"falloff_start"}, {"scale"}};
 constexpr KeySpec light_directional[] = {{"type", required}, {"irradiance"},       {"lux"},
                                          {"spectrum"},       {"angular_diameter"}, {"scale"}};
-constexpr KeySpec light_environment[] = {{"type", required}, {"radiance"}, {"luminance"}, {"nits"}, {"spectrum"},
-                                         {"scale"},          {"image"},    {"mapping"},   {"space"}};
+constexpr KeySpec light_environment[] = {{"type", required}, {"radiance"}, {"luminance"}, {"nits"},  {"spectrum"},
+                                         {"scale"},          {"image"},    {"mapping"},   {"space"}, {"portal"}};
+constexpr KeySpec light_goniometric[] = {{"type", required}, {"intensity"},       {"candela"}, {"lumens"}, {"spectrum"},
+                                         {"scale"},          {"image", required}, {"mapping"}, {"space"}};
+constexpr KeySpec light_projection[] = {{"type", required}, {"intensity"},       {"candela"}, {"lumens"}, {"spectrum"},
+                                        {"scale"},          {"image", required}, {"fov"},     {"space"}};
 constexpr KeySpec light_sky[] = {{"type", required}, {"turbidity"}, {"sun_elevation"},
                                  {"sun_azimuth"},    {"sun"},       {"ground_albedo"},
                                  {"resolution"},     {"up"},        {"scale"}};
@@ -80,6 +84,8 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"light.spot", light_spot},
                                 {"light.directional", light_directional},
                                 {"light.environment", light_environment},
+                                {"light.goniometric", light_goniometric},
+                                {"light.projection", light_projection},
                                 {"light.sky", light_sky},
                                 {"camera.perspective", camera_perspective},
                                 {"camera.orthographic", camera_orthographic},
