@@ -1,18 +1,14 @@
 #include "systems/build_light_images.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "engine/schedule/workers.h"
 #include "engine/spectrum/color_mode.h"
-#include "engine/spectrum/rgb_columns.h"
+#include "systems/image_texels.h"
 #include "systems/light_rows.h"
 
 namespace metamer {
 namespace {
 
-constexpr uint32_t texels_per_unit = 1 << 14;    // a multiple of column_lanes
 constexpr size_t most_texels = size_t{1} << 29;  // what a kernel's gathers reach
 
 ImageLookup lookup_of(const Light& light, const Image& image) {

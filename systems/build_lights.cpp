@@ -156,7 +156,7 @@ void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, Worl
     uint32_t image_row = no_index;
     if (image != nullptr) {
       const std::optional<uint32_t> added = add_light_image(scene, light, world);
-      if (!added) diagnostics.error(scene.location(entity), "the images of all lights have more than 2^29 pixels");
+      if (!added) diagnostics.error(scene.location(entity), too_many_light_texels);
       image_row = added.value_or(no_index);
     }
     const glm::dmat4& matrix = to_world[entity.index];
@@ -185,7 +185,7 @@ void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, Worl
     world.light_images = LightImages{};
     world.distant_disks.clear();
     world.environments.clear();
-    world.has_portals = false;
+    world.has_portals = world.has_shape_images = false;
     for (uint32_t& light : world.objects.first_light) light = no_index;
     return;
   }

@@ -43,6 +43,8 @@ void hit_emission(const World& world, const ShadeStream& shade, size_t i, Slots&
   light_spectrum(world, light, lambda_nm, radiance);
   const VF profile = emission_profile(light, dot(wo, normal));
   for (VF& value : radiance) value = hn::Mul(value, profile);
+  if (world.has_shape_images)
+    apply_image(world, light, load(shade.uv[0], i), hn::Sub(splat(1.0f), load(shade.uv[1], i)), lambda_nm, radiance);
   const Vec3 from = mul_add(wo, distance, position);
   const VF pdf_light = area_light_pdf(light, from, position, normal, -wo, distance);
   add_radiance(seen, shade, i, radiance, weight_of(world, load(shade.pdf_direction, i), pdf_light), slots);
@@ -63,12 +65,7 @@ void miss_emission(const World& world, const Environment& environment, const Sha
   load(shade.lambda_nm, i, lambda_nm);
   light_spectrum(world, light, lambda_nm, radiance);
   const ImagePoint point = image_point(environment.mapping, rotate(environment.to_local, direction));
-  if (environment.image != no_index) {
-    VF factor[4];
-    light_image(world.light_images, hn::Set(IntTag(), static_cast<int>(environment.image)), point.u, point.v, lambda_nm,
-                factor);
-    for (int j = 0; j < 4; ++j) radiance[j] = hn::Mul(radiance[j], factor[j]);
-  }
+  apply_image(world, light, point.u, point.v, lambda_nm, radiance);
   const VF pdf_light = hn::Mul(environment_pdf(environment, from, direction, point),
                                light.number(offsetof(LightRow, choice_probability)));
   add_radiance(seen, shade, i, radiance, weight_of(world, load(shade.pdf_direction, i), pdf_light), slots);

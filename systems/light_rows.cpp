@@ -112,7 +112,7 @@ double image_weight(const Light& light, const Image& image) {
   return is_sphere ? 4 * pi * mean : mean;
 }
 
-LightRow triangle_light(const glm::dvec3 (&vertex)[3], const Light& light) {
+LightRow triangle_light(const glm::dvec3 (&vertex)[3], const glm::dvec2 (&uv)[3], const Light& light) {
   LightRow row = row_of(LightShape::triangle, light);
   const glm::dvec3 edge1 = vertex[1] - vertex[0], edge2 = vertex[2] - vertex[0];
   const glm::dvec3 cross = glm::cross(edge1, edge2);
@@ -122,6 +122,10 @@ LightRow triangle_light(const glm::dvec3 (&vertex)[3], const Light& light) {
   store(row.axes + 3, edge2);
   if (length > 0) store(row.normal, cross / length);
   row.area = static_cast<float>(length / 2);
+  for (int c = 0; c < 2; ++c) {
+    row.inverse[c] = static_cast<float>(uv[0][c]);
+    for (int k = 1; k < 3; ++k) row.inverse[2 * k + c] = static_cast<float>(uv[k][c] - uv[0][c]);
+  }
   return row;
 }
 

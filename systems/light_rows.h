@@ -9,8 +9,8 @@
 
 namespace metamer {
 
-// A triangle; it emits from the side where its vertices run counter-clockwise.
-LightRow triangle_light(const glm::dvec3 (&vertex)[3], const Light& light);
+// A triangle; it emits from the side where its vertices run counter-clockwise. `uv` is for its image.
+LightRow triangle_light(const glm::dvec3 (&vertex)[3], const glm::dvec2 (&uv)[3], const Light& light);
 
 // A sphere, or the ellipsoid an affine map makes of it.
 LightRow sphere_light(const glm::dmat4& to_world, const Geometry& geometry, const Light& light);

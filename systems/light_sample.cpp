@@ -22,7 +22,8 @@ struct LightSample {
 };
 
 // Uniform over the shape's area; works for a reference point anywhere.
-HWY_INLINE void sample_area(const LightFields& light, VU shape, const Vec3& from, VF u, VF v, LightSample& sample) {
+HWY_INLINE void sample_area(const World& world, const LightFields& light, VU shape, const Vec3& from, VF u, VF v,
+                            LightSample& sample) {
   const VF one = splat(1.0f), zero = hn::Zero(FloatTag());
   const Vec3 p = light.vector(offsetof(LightRow, p));
   const Vec3 a = light.vector(offsetof(LightRow, axes)), b = light.vector(offsetof(LightRow, axes) + 12);
@@ -30,6 +31,13 @@ HWY_INLINE void sample_area(const LightFields& light, VU shape, const Vec3& from
   Vec3 point = mul_add(a, corner.b1, mul_add(b, corner.b2, p));
   Vec3 normal = light.vector(offsetof(LightRow, normal));
   VF pdf_area = hn::Div(one, hn::Max(light.number(offsetof(LightRow, area)), splat(1e-38f)));
+  if (world.has_shape_images) {
+    const size_t uv = offsetof(LightRow, inverse);
+    const VF across = hn::MulAdd(corner.b1, light.number(uv + 8), light.number(uv));
+    const VF up = hn::MulAdd(corner.b1, light.number(uv + 12), light.number(uv + 4));
+    store_uv(is_shape(shape, LightShape::triangle), hn::MulAdd(corner.b2, light.number(uv + 16), across),
+             hn::MulAdd(corner.b2, light.number(uv + 20), up), &sample.image_u, &sample.image_v);
+  }
   const MF disk = is_shape(shape, LightShape::disk);
   if (!hn::AllFalse(FloatTag(), disk)) {
     const VF inner = light.number(offsetof(LightRow, inner));
@@ -38,6 +46,8 @@ HWY_INLINE void sample_area(const LightFields& light, VU shape, const Vec3& from
     const SinCos phi = sincos_2pi(v);
     const Vec3 on_disk = mul_add(a, hn::Mul(r, phi.cos), mul_add(b, hn::Mul(r, phi.sin), p));
     point = if_then_else(disk, on_disk, point);
+    const VF from_rim = hn::Div(hn::Sub(one, r), hn::Max(hn::Sub(one, inner), splat(1e-38f)));
+    store_uv(disk, v, from_rim, &sample.image_u, &sample.image_v);
   }
   const MF round = hn::Or(is_shape(shape, LightShape::sphere), is_shape(shape, LightShape::ellipsoid));
   if (!hn::AllFalse(FloatTag(), round)) {
@@ -49,6 +59,7 @@ HWY_INLINE void sample_area(const LightFields& light, VU shape, const Vec3& from
     const Vec3 outside = normalize(area) * light.number(offsetof(LightRow, normal_sign));
     normal = if_then_else(round, outside, normal);
     pdf_area = hn::IfThenElse(round, ellipsoid_area_pdf(light, q), pdf_area);
+    if (world.has_shape_images) store_sphere_uv(round, q, &sample.image_u, &sample.image_v);
   }
   const Vec3 to_light = point - from;
   const VF distance2 = hn::Max(dot(to_light, to_light), splat(1e-30f));
@@ -63,7 +74,8 @@ HWY_INLINE void sample_area(const LightFields& light, VU shape, const Vec3& from
 
 // Uniform in the cone under which a sphere is seen: Shirley, Wang, Zimmerman, "Monte Carlo Techniques for Direct
 // Lighting Calculations", ACM TOG 15(1), 1996. From inside it has no cone: sample_area serves.
-HWY_INLINE void sample_sphere_cone(const LightFields& light, const Vec3& from, VF u, VF v, LightSample& sample) {
+HWY_INLINE void sample_sphere_cone(const World& world, const LightFields& light, const Vec3& from, VF u, VF v,
+                                   LightSample& sample) {
   const VF zero = hn::Zero(FloatTag());
   const SphereCone cone = sphere_cone(light, from);
   const Vec3 in_cone = sample_uniform_cone(u, v, cone.one_minus_cos);
@@ -82,6 +94,9 @@ HWY_INLINE void sample_sphere_cone(const LightFields& light, const Vec3& from, V
   const VF cos_light = hn::Div(half_chord, hn::Sqrt(hn::Max(cone.radius2, splat(1e-38f))));
   const VF weight = hn::Div(emission_profile(light, cos_light), pdf);
   sample.weight = hn::IfThenElse(outside, hn::IfThenElseZero(lit, weight), sample.weight);
+  if (world.has_shape_images)
+    store_sphere_uv(outside, ellipsoid_unit_point(light, mul_add(direction, distance, from)), &sample.image_u,
+                    &sample.image_v);
 }
 
 HWY_INLINE void sample_point_light(const LightFields& light, const Vec3& from, LightSample& sample) {
@@ -152,11 +167,11 @@ HWY_INLINE LightSample sample_light(const World& world, const LightFields& light
   const VF zero = hn::Zero(d);
   LightSample sample{{zero, zero, zero}, zero, zero, zero, zero, zero};
   const MF area = float_mask(hn::Lt(shape, splat_u(static_cast<uint32_t>(LightShape::point))));
-  if (!hn::AllFalse(d, area)) sample_area(light, shape, from, u, v, sample);
+  if (!hn::AllFalse(d, area)) sample_area(world, light, shape, from, u, v, sample);
   const MF sphere = is_shape(shape, LightShape::sphere);
   LightSample other = sample;
   if (!hn::AllFalse(d, sphere)) {
-    sample_sphere_cone(light, from, u, v, other);
+    sample_sphere_cone(world, light, from, u, v, other);
     sample = select(sphere, other, sample);
   }
   const MF point = is_shape(shape, LightShape::point);
@@ -198,15 +213,7 @@ HWY_INLINE void store_light_sample(const World& world, const LightFields& light,
   VF lambda_nm[4], radiance[4];
   load(shade.lambda_nm, i, lambda_nm);
   light_spectrum(world, light, lambda_nm, radiance);
-  if (!world.light_images.rows.empty()) {
-    const VU image = gather(world.image_of_light.data(), light.light);
-    const auto has_image = hn::Ne(image, splat_u(no_index));
-    VF factor[4];
-    light_image(world.light_images, as_index(hn::IfThenElseZero(has_image, image)), sample.image_u, sample.image_v,
-                lambda_nm, factor);
-    for (VF& value : factor) value = hn::IfThenElse(float_mask(has_image), value, splat(1.0f));
-    for (int j = 0; j < 4; ++j) radiance[j] = hn::Mul(radiance[j], factor[j]);
-  }
+  apply_image(world, light, sample.image_u, sample.image_v, lambda_nm, radiance);
   const VF weight = hn::Div(sample.weight, probability);
   for (int j = 0; j < 4; ++j) radiance[j] = hn::Mul(radiance[j], weight);
   // What lets light in looks into two media: its kernel knows which of them lies before the light.

@@ -49,6 +49,19 @@ HWY_INLINE void light_spectrum(const World& world, const LightFields& light, con
   for (int j = 0; j < 4; ++j) out[j] = hn::Mul(out[j], scale);
 }
 
+// Times the images of the lanes' lights at these points, where they have one.
+HWY_INLINE void apply_image(const World& world, const LightFields& light, VF u, VF v, const VF lambda_nm[4],
+                            VF radiance[4]) {
+  if (world.light_images.rows.empty()) return;
+  const VU image = gather(world.image_of_light.data(), light.light);
+  const auto has_image = hn::Ne(image, splat_u(no_index));
+  if (hn::AllFalse(UintTag(), has_image)) return;
+  VF factor[4];
+  light_image(world.light_images, as_index(hn::IfThenElseZero(has_image, image)), u, v, lambda_nm, factor);
+  for (int j = 0; j < 4; ++j)
+    radiance[j] = hn::Mul(radiance[j], hn::IfThenElse(float_mask(has_image), factor[j], splat(1.0f)));
+}
+
 // How much of its radiance a shape sends to the angle whose cosine (of either sign) this is.
 HWY_INLINE VF emission_profile(const LightFields& light, VF cos_light) {
   const VF power = light.number(offsetof(LightRow, cosine_power)), one = splat(1.0f);
@@ -95,6 +108,19 @@ HWY_INLINE LightImagePoint projection_point(const LightFields& light, const Vec3
   const VF u = hn::MulAdd(half, right, half), v = hn::NegMulAdd(half, up, half);
   const MF all = hn::And(ahead, inside);
   return {hn::IfThenElseZero(all, u), hn::IfThenElseZero(all, v), all};
+}
+
+// The image point of a surface's (u, v), v up.
+HWY_INLINE void store_uv(MF mask, VF u, VF v, VF* image_u, VF* image_v) {
+  *image_u = hn::IfThenElse(mask, u, *image_u);
+  *image_v = hn::IfThenElse(mask, hn::Sub(splat(1.0f), v), *image_v);
+}
+// Of a sphere's (u, v) at a point of the unit sphere, as in systems/surface.cpp: v is down from the pole, as the
+// image's.
+HWY_INLINE void store_sphere_uv(MF mask, const Vec3& q, VF* image_u, VF* image_v) {
+  const ImagePoint point = latitude_longitude_point(q);
+  *image_u = hn::IfThenElse(mask, point.u, *image_u);
+  *image_v = hn::IfThenElse(mask, point.v, *image_v);
 }
 
 // The cone under which a sphere is seen from outside.

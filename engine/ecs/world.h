@@ -110,8 +110,9 @@ struct LightRow {
   float axes[9] = {};
   float normal[3] = {};  // triangle, disk: unit normal of the emitting side. spot: unit direction of its axis
   float area = 0;        // m^2
-  float inverse[9] =
-      {};  // ellipsoid: rows of the inverse of `axes` as columns. goniometric, projection: world to local
+  // sphere, ellipsoid: rows of the inverse of `axes` as columns. goniometric, projection: world to local.
+  // triangle: uv of the first vertex, and what the others' have more, where it has an image.
+  float inverse[9] = {};
   union {
     float normal_sign = 1;  // sphere, ellipsoid: -1 emits inwards
     float inner;            // disk: inner radius / radius
@@ -211,8 +212,8 @@ struct World {
   bool needs_tangents = false;  // an anisotropic material is present
   bool has_instances = false;   // some triangles are in their object's space
   bool has_quadrics = false;
-  bool has_portals = false;    // some environment's light depends on where a ray that leaves the scene came from
-  bool has_interiors = false;  // some material is followed: paths carry their media
+  bool has_portals = false;       // some environment's light depends on where a ray that leaves the scene came from
+  bool has_interiors = false;     // some material is followed: paths carry their media
   bool has_shape_images = false;  // some shape emits an image
   bool has_textures() const { return !textures.programs.empty(); }
   bool needs_uvs() const { return has_textures() || has_shape_images; }

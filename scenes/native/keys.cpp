@@ -35,8 +35,8 @@ constexpr KeySpec geometry_mesh[] = {{"type", required}, {"mesh", required}, {"f
 constexpr KeySpec geometry_sphere[] = {{"type", required}, {"radius"}, {"flip_normal"}};
 constexpr KeySpec geometry_disk[] = {{"type", required}, {"radius"}, {"inner_radius"}, {"height"}, {"flip_normal"}};
 constexpr KeySpec geometry_rectangle[] = {{"type", required}, {"width"}, {"depth"}, {"flip_normal"}};
-constexpr KeySpec light_area[] = {{"type", required}, {"radiance"},     {"luminance"}, {"nits"},     {"lumens"},
-                                  {"spectrum"},       {"cosine_power"}, {"scale"},     {"two_sided"}};
+constexpr KeySpec light_area[] = {{"type", required}, {"radiance"}, {"luminance"}, {"nits"},  {"lumens"}, {"spectrum"},
+                                  {"cosine_power"},   {"scale"},    {"two_sided"}, {"image"}, {"space"}};
 constexpr KeySpec light_point[] = {{"type", required}, {"intensity"}, {"candela"}, {"lumens"}, {"spectrum"}, {"scale"}};
 constexpr KeySpec light_spot[] = {{"type", required}, {"intensity"},  {"candela"},       {"lumens"},
                                   {"spectrum"},       {"cone_angle"}, {"falloff_start"}, {"scale"}};

@@ -85,10 +85,11 @@ SpectrumId read_brightness(SceneContext& context, const JsonObject& object, Colo
 void read_light_image(SceneContext& context, const JsonObject& object, ColorSpace space, Light& light) {
   constexpr std::string_view mappings[] = {"latitude_longitude", "equal_area"};  // in the order of ImageMapping
   const JsonReader& reader = context.reader;
-  const auto mapping = static_cast<ImageMapping>(light.kind == LightKind::projection ? 0 : object.choice("mapping", mappings, 0));
+  const bool is_sphere = light.kind == LightKind::environment || light.kind == LightKind::goniometric;
+  const auto mapping = static_cast<ImageMapping>(is_sphere ? object.choice("mapping", mappings, 0) : 0);
   if (!object.has("image")) {
-    for (const std::string_view key : {"mapping", "space"})
-      if (object.has(key)) reader.error(*object.find(key), fmt::format("'{}' goes with 'image' only", key));
+    if (is_sphere && object.has("mapping")) reader.error(*object.find("mapping"), "'mapping' goes with 'image' only");
+    if (object.has("space")) reader.error(*object.find("space"), "'space' goes with 'image' only");
     return;
   }
   const Json::Value& value = *object.find("image");
@@ -112,8 +113,7 @@ void read_portal(SceneContext& context, const JsonObject& object, Light& light) 
   if (value == nullptr) return;
   const JsonReader& reader = context.reader;
   if (!reader.array(*value, "portal", "four points [x, y, z]")) return;
-  if (value->size() != 4)
-    return reader.error(*value, fmt::format("'portal' has {} points; expected 4", value->size()));
+  if (value->size() != 4) return reader.error(*value, fmt::format("'portal' has {} points; expected 4", value->size()));
   glm::dvec3 corners[4];
   const size_t errors_before = reader.diagnostics().error_count();
   for (Json::ArrayIndex i = 0; i < 4; ++i)
@@ -155,6 +155,8 @@ void read_light(SceneContext& context, Entity entity, const Json::Value& value) 
     light.two_sided = object.boolean("two_sided", false) ? 1 : 0;
     light.cosine_power = object.number_f("cosine_power", {0, 1e6}, 0);
     light.is_power = object.has("lumens") ? 1 : 0;
+    space = static_cast<ColorSpace>(object.choice("space", color_space_names(), 0));
+    read_light_image(context, object, space, light);
   } else if (object.type() == "point") {
     light.kind = LightKind::point;
   } else if (object.type() == "spot") {

@@ -183,4 +183,18 @@ void read_projection(Reader& reader, Parameters& parameters) {
             reader.state.transform);
 }
 
+void read_emission_image(Reader& reader, Parameters& parameters, const std::string& filename, AreaLight& light) {
+  const double scale = parameters.number_from("scale", 1, 0);
+  if (parameters.has("L")) return parameters.error("L", "'L' and 'filename' exclude each other");
+  const std::optional<Image> image = read_light_image(reader, parameters, filename);
+  if (!image) return;
+  const double mean = image_weight(Light{}, *image);  // of an area light
+  if (light.power > 0 && !(mean > 0)) return parameters.error("power", "the image is black");
+  if (light.power > 0) light.power /= mean;
+  light.on = true;
+  light.spectrum = reader.scene.spectra.add_white(image->color_space);
+  light.scale = scale / white_luminance(reader, reader.state.color_space);
+  light.image = add_image(reader, *image);
+}
+
 }  // namespace metamer::pbrt

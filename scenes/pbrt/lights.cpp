@@ -130,13 +130,17 @@ AreaLight read_area_light(Reader& reader, std::string_view kind, Parameters& par
                           fmt::format("there is no area light source \"{}\"{}", kind, did_you_mean(kind, known)));
     return light;
   }
+  const std::string filename = parameters.string("filename", "");
+  light.power = parameters.number("power", -1);
+  light.two_sided = parameters.boolean("twosided", false);
+  if (!filename.empty()) {
+    read_emission_image(reader, parameters, filename, light);
+    return light;
+  }
   const LightSpectrum spectrum = read_light_spectrum(reader, parameters, "L");
   light.on = true;
   light.spectrum = spectrum.id;
   light.scale = spectrum.scale;
-  light.power = parameters.number("power", -1);
-  light.two_sided = parameters.boolean("twosided", false);
-  parameters.unsupported("filename", "the light emits evenly");
   return light;
 }
 

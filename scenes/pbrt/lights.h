@@ -27,5 +27,7 @@ void add_light(Reader& reader, Parameters& parameters, Light light, double scale
 void read_infinite(Reader& reader, Parameters& parameters);
 void read_goniometric(Reader& reader, Parameters& parameters);
 void read_projection(Reader& reader, Parameters& parameters);
+// The image of shapes that emit one; the light stays off after an error.
+void read_emission_image(Reader& reader, Parameters& parameters, const std::string& filename, AreaLight& light);
 
 }  // namespace metamer::pbrt

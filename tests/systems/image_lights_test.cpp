@@ -1,6 +1,7 @@
 // Lights with images, several environments, and portals: against closed forms, and against each other.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -154,6 +155,121 @@ TEST(ImageLights, WeighTheirImagesBySolidAngle) {
   EXPECT_NEAR(image_weight(light, white), 4 * std::asin(std::pow(std::sin(20 * pi / 180), 2)), 1e-4);
   light.kind = LightKind::area;
   EXPECT_NEAR(image_weight(light, white), 1, 1e-5);
+}
+
+// Between the centres of the pixels, clamped; (u, v) with v up, as surfaces have it.
+double emitted(const Image& image, double u, double v) {
+  const double x = u * image.width - 0.5, y = (1 - v) * image.height - 0.5;
+  const double right = x - std::floor(x), lower = y - std::floor(y);
+  const auto at = [&](double column, double row) {
+    const double i = std::clamp(column, 0.0, image.width - 1.0), j = std::clamp(row, 0.0, image.height - 1.0);
+    return double{image.rgb[3 * (static_cast<size_t>(j) * image.width + static_cast<size_t>(i))]};
+  };
+  const double i = std::floor(x), j = std::floor(y);
+  return (at(i, j) * (1 - right) + at(i + 1, j) * right) * (1 - lower) +
+         (at(i, j + 1) * (1 - right) + at(i + 1, j + 1) * right) * lower;
+}
+
+// A shape that emits an image, and where it has its (u, v), in its own space.
+struct Emitter {
+  Geometry geometry;
+  glm::dmat4 place;
+  glm::dvec3 (*point)(double u, double v);
+};
+constexpr double hole = 0.3f;
+const Emitter emitters[] = {
+    {rectangle(2, 1.5f), moved(0.2, 0.1, 1.2) * turned(160, 1, 0.2, 0.3),
+     [](double u, double v) { return glm::dvec3(2 * u - 1, 1.5 * (v - 0.5), 0); }},
+    {disk(1, 0.3f), moved(0.3, -0.2, 1.4) * turned(150, 1, 0.4, 0) * stretched(1, 1.5, 1),
+     [](double u, double v) {
+       const double r = 1 - (1 - hole) * v;
+       return glm::dvec3(r * std::cos(2 * pi * u), r * std::sin(2 * pi * u), 0);
+     }},
+    {sphere(0.5f), moved(0.4, 0.3, 1) * turned(70, 1, 0.5, 0),
+     [](double u, double v) {
+       return 0.5 * glm::dvec3(std::sin(pi * v) * std::cos(2 * pi * u), std::sin(pi * v) * std::sin(2 * pi * u),
+                               -std::cos(pi * v));
+     }},
+    {sphere(0.5f), moved(0.4, 0.3, 1) * turned(70, 1, 0.5, 0) * stretched(1, 0.6, 1.3), [](double u, double v) {
+       return 0.5 * glm::dvec3(std::sin(pi * v) * std::cos(2 * pi * u), std::sin(pi * v) * std::sin(2 * pi * u),
+                               -std::cos(pi * v));
+     }}};
+
+void add_emitter(SceneBuilder& b, const Emitter& emitter, const Image& image) {
+  b.scene.images.push_back(image);
+  Light light;
+  light.spectrum = unit_spectrum;
+  light.scale = 3;
+  light.image = static_cast<ImageId>(b.scene.images.size() - 1);
+  b.scene.registry.set(b.add(emitter.geometry, b.diffuse(0.0), emitter.place), light);
+}
+
+// E = integral of L cos cos' / d^2 over the surface, from its (u, v); by light samples and BSDF samples together, and
+// by light samples alone (without shadows).
+TEST(ImageOfAShape, LightsAPlaneByTheImageOfItsPoints) {
+  const Image image = grey_image(7, 4, ImageMapping::latitude_longitude, 8);
+  for (const Emitter& emitter : emitters) {
+    constexpr int n = 600;
+    double wanted = 0;
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        const double u = (i + 0.5) / n, v = (j + 0.5) / n, h = 1e-5;
+        const auto at = [&](double s, double t) {
+          return glm::dvec3(emitter.place * glm::dvec4(emitter.point(s, t), 1.0));
+        };
+        const glm::dvec3 p = at(u, v);
+        const glm::dvec3 area = glm::cross(at(u + h, v) - at(u - h, v), at(u, v + h) - at(u, v - h)) / (4 * h * h);
+        const double d2 = glm::dot(p, p), cos_floor = p.z / std::sqrt(d2);
+        const double towards = -glm::dot(area, p) / std::sqrt(d2);
+        if (cos_floor > 0 && towards > 0) wanted += 3 * emitted(image, u, v) * cos_floor * towards / d2 / (n * n);
+      }
+    for (const bool shadows : {true, false}) {
+      SceneBuilder b(16, 16, 512, 1);
+      b.scene.settings.shadows = shadows;
+      b.add(rectangle(20, 20), b.diffuse(0.5));
+      add_emitter(b, emitter, image);
+      Camera camera = orthographic(1e-5f);
+      b.look_at({0, 0, 0.05}, {0, 0, 0}, camera);  // below the shapes
+      expect_mean(
+          trace_radiances(*b.freeze()), [&](double) { return wanted * 0.5 / pi; }, 0.03);
+    }
+  }
+}
+
+TEST(ImageOfAShape, IsSeenByItsUv) {
+  const Image image = grey_image(5, 4, ImageMapping::latitude_longitude, 8);
+  for (const Emitter& emitter : emitters)
+    for (const double u : {0.13, 0.52, 0.9})
+      for (const double v : {0.2, 0.77}) {
+        SceneBuilder b(4, 4, 1, 0);
+        add_emitter(b, emitter, image);
+        const glm::dvec3 p(emitter.place * glm::dvec4(emitter.point(u, v), 1.0));
+        const auto side = [&](double t) {
+          return glm::dvec3(emitter.place * glm::dvec4(emitter.point(u, t), 1.0)) - p;
+        };
+        const glm::dvec3 along(glm::dvec3(emitter.place * glm::dvec4(emitter.point(u + 1e-4, v), 1.0)) - p);
+        const glm::dvec3 normal = glm::normalize(glm::cross(along, side(v + 1e-4)));
+        b.look_at(p + 0.02 * normal, p, orthographic(1e-5f), glm::normalize(along));
+        for (const PathRadiance& path : trace_radiances(*b.freeze()))
+          EXPECT_NEAR(path.radiance[0] / (3 * emitted(image, u, v)), 1, 1e-3) << u << " " << v;
+      }
+}
+
+TEST(ImageOfAShape, SharesItsPowerByItsMean) {
+  const Image image = grey_image(5, 4, ImageMapping::latitude_longitude, 8);
+  SceneBuilder b(4, 4, 1, 0);
+  b.scene.images.push_back(image);
+  Light light;
+  light.spectrum = unit_spectrum;
+  light.scale = 100;
+  light.is_power = 1;
+  light.image = 0;
+  b.scene.registry.set(b.add(rectangle(2, 3), b.diffuse(0.0)), light);
+  b.look_at({0, 0, 5}, {0, 0, 0}, perspective(40));
+  double mean = 0;
+  for (size_t i = 0; i < image.rgb.size(); i += 3) mean += double{image.rgb[i]} / 20;
+  const std::unique_ptr<World> world = b.freeze();
+  EXPECT_NEAR(double{world->lights[0].scale} * pi * 6 * mean, 100, 1e-3);
 }
 
 // Mean radiance of a furnished floor under the environments that `add` makes.

@@ -137,6 +137,9 @@ TEST(NativeLights, WithImagesAreKindsOfTheirOwn) {
   EXPECT_EQ(only(slide).fov_deg, 40);
   EXPECT_NEAR(candela(slide), 3, 1e-4);
   EXPECT_EQ(only(read_light(R"("type": "projection")")).fov_deg, 90);
+  const Scene screen = read_light(R"("type": "area", "nits": 3}, "geometry": {"type": "sphere")");
+  EXPECT_EQ(only(screen).image, 0u);
+  EXPECT_NEAR(candela(screen), 3, 1e-4);
   const Scene sky =
       read_light(R"("type": "environment", "portal": [[1, 0, 0], [1, 2, 0], [1, 2, 3], [1, 0, 3]], "luminance": 7)");
   EXPECT_EQ(only(sky).has_portal, 1u);

@@ -300,6 +300,27 @@ TEST(PbrtLights, AProjectionHasItsImageFieldOfViewAndPower) {
             "scene:3: error: LightSource \"projection\": 'fov' is 180; expected less than 180 degrees");
 }
 
+TEST(PbrtLights, AShapeMayEmitAnImage) {
+  const TemporaryFolder folder;
+  folder.write("screen.pfm", pfm(4, 2, {2, 2, 2}));
+  const auto at = [&](const std::string& parameters) {
+    return read_scene_at(folder.write(
+        "scene", "Camera \"perspective\" WorldBegin\nAreaLightSource \"diffuse\" \"string filename\" \"screen.pfm\" " +
+                     parameters + sphere));
+  };
+  const ReadScene read = at("\"float scale\" 3 \"bool twosided\" true");
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  EXPECT_THAT(read.messages, testing::IsEmpty());
+  EXPECT_EQ(read.get<Light>().kind, LightKind::area);
+  ASSERT_EQ(read.get<Light>().image, 0u);
+  EXPECT_EQ(read.get<Light>().two_sided, 1u);
+  EXPECT_NEAR(luminance(read), 3, 1e-4);
+  // Half of what the scale would be for a white of 1.
+  EXPECT_NEAR(luminance(at("\"float power\" 100")), 100 / (4 * pi * pi) / 2, 1e-4);
+  EXPECT_EQ(at("\"rgb L\" [1 1 1]").messages.at(0),
+            "scene:2: error: AreaLightSource \"diffuse\": 'L' and 'filename' exclude each other");
+}
+
 TEST(PbrtLights, LampsOfObjectsAreLeftOut) {
   const ReadScene read = read_world(std::string("ObjectBegin \"lamp\" AreaLightSource \"diffuse\"") + sphere +
                                     "ObjectEnd ObjectInstance \"lamp\"");
