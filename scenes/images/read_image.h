@@ -13,7 +13,7 @@ struct ImageEncoding {
 
 // Reads EXR, HDR, PFM, PNG, JPEG, TGA and what else OpenImageIO knows as linear RGB from the top row down. Formats of 8
 // or 16 bits an integer channel are decoded, by default from sRGB (IEC 61966-2-1); floating-point ones are linear.
-// Alpha is dropped, grey fills all three channels. False after reporting what is wrong: at `named_at` if the file
+// Alpha is dropped, grey fills all three channels. The colour space is the one whose chromaticities an EXR file names. False after reporting what is wrong: at `named_at` if the file
 // cannot be read, else at the file itself, also where a pixel is negative or not finite.
 bool read_image(const std::string& path, const SourceLocation& named_at, Image& image, Diagnostics& diagnostics,
                 const ImageEncoding& encoding = {});
