@@ -121,7 +121,7 @@ struct ShadeStream {
   Groups groups;
   // Writer: surface.
   Columns<float, 3> wo;                       // unit, towards the viewer
-  Columns<float, 3> position;                 // metres
+  Columns<float, 3> position;                 // metres; of a ray that left a world with portals, where it came from
   Columns<float, 3> normal;                   // geometric, unit, on the side the shape calls its outside
   Columns<float, 3> shading_normal, tangent;  // unit; tangent only where the world asks for it
   Columns<float, 2> uv;                       // only where the world has textures

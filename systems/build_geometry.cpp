@@ -6,7 +6,9 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <optional>
 
+#include "systems/build_light_images.h"
 #include "systems/build_motion.h"
 #include "systems/freeze.h"
 #include "systems/light_rows.h"
@@ -160,11 +162,22 @@ Mesh rectangle_mesh(const Geometry& geometry) {
   return mesh;
 }
 
-// The lights of the last object, those from its first_light on, if they state their power.
-void spread_power_of(Builder& b, Entity entity) {
-  const Light light = b.scene.registry.get<Light>(entity);
+// What the lights of the last object, those from its first_light on, have together: their image, and the power that
+// they state.
+void finish_lights(Builder& b, Entity entity) {
+  Light light = b.scene.registry.get<Light>(entity);
+  World& world = b.world;
+  const size_t first = world.objects.first_light.back();
+  if (light.image != no_index) {
+    const std::optional<uint32_t> image = add_light_image(b.scene, light, world);
+    if (!image) b.diagnostics.error(b.scene.location(entity), too_many_light_texels);
+    while (world.image_of_light.size() < first) world.image_of_light.push_back(no_index);
+    while (world.image_of_light.size() < world.lights.size()) world.image_of_light.push_back(image.value_or(no_index));
+    world.has_shape_images = true;
+    const double weight = image ? double{world.light_images.rows[*image].weight} : 1;
+    if (light.is_power != 0 && weight > 0) light.scale = static_cast<float>(light.scale / weight);
+  }
   if (light.is_power == 0) return;
-  const size_t first = b.world.objects.first_light.back();
   if (!spread_power(light, {b.world.lights.data() + first, b.world.lights.size() - first})) {
     b.diagnostics.error(b.scene.location(entity),
                         fmt::format("the area light {} has no area to emit its power from", b.scene.describe(entity)));
@@ -200,13 +213,16 @@ void add_mesh_object(Builder& b, Entity entity, const Geometry& geometry, const 
   objects.first_light.back() = static_cast<uint32_t>(b.world.lights.size());
   for (uint32_t t = first; t < first + mesh.indices.size() / 3; ++t) {
     glm::dvec3 vertices[3];
+    glm::dvec2 uvs[3];
     for (int k = 0; k < 3; ++k) {
-      const float* p = b.world.positions.data() + size_t{3} * b.world.triangle_vertices[size_t{3} * t + k];
+      const size_t vertex = b.world.triangle_vertices[size_t{3} * t + k];
+      const float *p = b.world.positions.data() + 3 * vertex, *uv = b.world.uvs.data() + 2 * vertex;
       vertices[k] = {p[0], p[1], p[2]};
+      uvs[k] = std::isnan(uv[0]) ? glm::dvec2(k > 0, k > 1) : glm::dvec2(uv[0], uv[1]);  // as in systems/surface.cpp
     }
-    b.world.lights.push_back(triangle_light(vertices, b.scene.registry.get<Light>(entity)));
+    b.world.lights.push_back(triangle_light(vertices, uvs, b.scene.registry.get<Light>(entity)));
   }
-  spread_power_of(b, entity);
+  finish_lights(b, entity);
 }
 
 void add_quadric_object(Builder& b, Entity entity, const Geometry& geometry, const glm::dmat4& to_world) {
@@ -221,7 +237,7 @@ void add_quadric_object(Builder& b, Entity entity, const Geometry& geometry, con
   const Light light = b.scene.registry.get<Light>(entity);
   b.world.lights.push_back(geometry.kind == ShapeKind::sphere ? sphere_light(to_world, geometry, light)
                                                               : disk_light(to_world, geometry, light));
-  spread_power_of(b, entity);
+  finish_lights(b, entity);
 }
 
 // The last object's alpha. Of a constant one 0 is not there for any ray, and 1 is no mask.

@@ -33,9 +33,8 @@ uint32_t add_normal_map(const Image& image, ImageId id, TextureSet& set);
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
                     World& world, Diagnostics& diagnostics);
 
-// The environment's image (null: none) as columns of spectra, or of the mode's coefficients, and a density, and its
-// rotation.
-void build_environment(const Image* image, const glm::dmat4& to_world, ColorMode color, Environment& environment);
+// An environment's rotation and the density of the directions of its image (null: none).
+void build_environment(const Image* image, const glm::dmat4& to_world, Environment& environment);
 
 // Lights that are no shapes (see light_rows.h), then the choice among all lights by power.
 void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics);

@@ -99,7 +99,7 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
         hn::IfThenElse(place.moves, hn::MulAdd(splat(16 * eps), largest(extent), surface.offset), surface.offset);
   }
 
-  if (world.needs_tangents || world.has_textures()) {
+  if (world.needs_tangents || world.needs_uvs()) {
     VF u[3], v[3];
     for (int k = 0; k < 3; ++k) {
       const VI at = hn::Add(vertex[k], vertex[k]);
@@ -169,7 +169,7 @@ HWY_INLINE Surface quadric_surface(const World& world, const Vec3& origin, const
   const MF pole = hn::Eq(hn::Add(hn::Abs(local.x), hn::Abs(local.y)), zero);
   surface.tangent = transform_vector(m, if_then_else(pole, Vec3{one, zero, zero}, along));
   const VF inner_radius = gather(&first.inner_radius, base);
-  if (world.has_textures()) quadric_uv(local, radius, inner_radius, sphere, surface);
+  if (world.needs_uvs()) quadric_uv(local, radius, inner_radius, sphere, surface);
   if (world.has_bumps) {
     // The normal of a sphere turns as the point does.
     const VF bend = hn::IfThenElseZero(sphere, hn::Div(side, hn::Sqrt(dot(normal, normal))));
@@ -210,7 +210,10 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     // Dead lanes look at the batch's first path and are forgotten.
     const VI path = as_index(hn::IfThenElseZero(live_u, ordered));
     carry(paths, path, live, shade, i);
-    if (i >= miss_begin) continue;
+    if (i >= miss_begin) {
+      if (world.has_portals) store(gather(paths.origin, path), shade.position, i);
+      continue;
+    }
     const VU met = gather(hits.object, path);
     const VI object = as_index(hn::IfThenElseZero(hn::And(live_u, hn::Ne(met, splat_u(no_index))), met));
     const VU primitive = gather(hits.primitive, path);
@@ -243,7 +246,7 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     store(s.normal, shade.normal, i);
     store(s.shading_normal, shade.shading_normal, i);
     if (world.needs_tangents) store(s.tangent, shade.tangent, i);
-    if (world.has_textures()) {
+    if (world.needs_uvs()) {
       store(s.u, shade.uv[0], i);
       store(s.v, shade.uv[1], i);
     }

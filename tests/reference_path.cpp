@@ -28,7 +28,7 @@ struct Tracer {
   ReferenceRandom random;
 
   bool is_path;
-  std::vector<uint32_t> summed, chosen;  // lights without the environment: all of these, and one of those
+  std::vector<uint32_t> summed, chosen;  // lights that are no environments: all of these, and one of those
 
   Tracer(const World& frozen, uint32_t seed)
       : world(frozen), scene(frozen), random(seed), is_path(frozen.settings.integrator == Integrator::path) {
@@ -63,7 +63,7 @@ struct Tracer {
                      bool together, uint32_t events, bool sees_lights, bool sees_sky, uint32_t mask) {
     const ReferenceHit hit = scene.intersect(origin, direction, mask);
     if (hit.object == no_index) {
-      Spectrum4 sky = sees_sky ? reference_environment(world, direction, lambda_nm) : Spectrum4{};
+      Spectrum4 sky = sees_sky ? reference_environment(world, origin, direction, lambda_nm) : Spectrum4{};
       if (sees_lights) sky = plus(sky, reference_disks(world, direction, lambda_nm));
       attenuate(world, media, lambda_nm, infinity, sky);
       return sky;
@@ -247,7 +247,8 @@ struct Tracer {
         scene.intersect(hit.position, sample.direction, visible_to_shadows, far).object != no_index)
       return {};
     Spectrum4 result = reference_radiance(world, world.lights[light], lambda_nm);
-    for (size_t j = 0; j < 4; ++j) result[j] *= f_cos[j] * sample.factor * count;
+    const Spectrum4 image = reference_light_image(world, light, -sample.direction, lambda_nm);
+    for (size_t j = 0; j < 4; ++j) result[j] *= f_cos[j] * image[j] * sample.factor * count;
     attenuate(world, next_media(media, hit, frame.came, sample.direction), lambda_nm, sample.distance, result);
     return result;
   }
@@ -256,7 +257,7 @@ struct Tracer {
   Spectrum4 sky_through_everything(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
                                    const Spectrum4& lambda_nm, const Evaluate& evaluate) {
     const Vector direction = reference_direction(random);
-    Spectrum4 result = reference_environment(world, direction, lambda_nm);
+    Spectrum4 result = reference_environment(world, hit.position, direction, lambda_nm);
     const Spectrum4 f_cos = evaluate(frame.in(direction));
     for (size_t j = 0; j < 4; ++j) result[j] *= f_cos[j] * 4 * std::numbers::pi;
     attenuate(world, next_media(media, hit, frame.came, direction), lambda_nm, infinity, result);

@@ -141,18 +141,21 @@ struct MaterialSlot {
   static constexpr auto fields = std::make_tuple(&MaterialSlot::material);
 };
 
-enum class LightKind : uint32_t { area, point, spot, directional, environment };
+enum class LightKind : uint32_t { area, point, spot, directional, environment, goniometric, projection };
 
 // area         emitted radiance along the normal, W m^-2 sr^-1 nm^-1, of the entity's Geometry, on the side of the
-// normal
-//              or both; at the angle theta to it cos^cosine_power theta times that. With `is_power` the power of the
-//              whole shape instead, W nm^-1
+//              normal or both; at the angle theta to it cos^cosine_power theta times that. With `is_power` the power of
+//              the whole shape instead, W nm^-1
 // point        intensity, W sr^-1 nm^-1, at the entity's origin
 // spot         intensity along the entity's -z axis, all of it up to `falloff_deg` from the axis, none beyond
-// `cone_deg` directional  irradiance on a plane facing it, W m^-2 nm^-1; light travels along the entity's -z axis, from
-// one
+// `cone_deg` goniometric  intensity times `image`, which covers the sphere around the entity's origin, +z up projection
+// intensity times `image`, thrown as a camera would take it: along the entity's +z axis, +y up, +x to the
+//              right of the image, `fov_deg` over its shorter side; none outside
+// directional  irradiance on a plane facing it, W m^-2 nm^-1; light travels along the entity's -z axis, from one
 //              direction or evenly from a disc of `angular_diameter_deg`
-// environment  radiance from infinity, times `image` (linear RGB of Scene::images) if there is one
+// environment  radiance from infinity, times `image` if there is one, +z up; there may be several. With `has_portal` it
+//              is seen through a rectangle in world space only, along the cross product of `portal_x` and `portal_y`
+// Images are linear RGB of Scene::images.
 struct Light {
   LightKind kind = LightKind::area;
   SpectrumId spectrum = 0;
@@ -163,9 +166,13 @@ struct Light {
   uint32_t is_power = 0;                 // 1: `spectrum` is the power of the shape
   float cone_deg = 30, falloff_deg = 0;  // half angles, 0 <= falloff_deg <= cone_deg <= 180
   float angular_diameter_deg = 0;        // below 180; 0: parallel light
-  static constexpr auto fields = std::make_tuple(&Light::kind, &Light::spectrum, &Light::scale, &Light::two_sided,
-                                                 &Light::image, &Light::cosine_power, &Light::is_power,
-                                                 &Light::cone_deg, &Light::falloff_deg, &Light::angular_diameter_deg);
+  float fov_deg = 90;                    // above 0 and below 180
+  uint32_t has_portal = 0;
+  glm::vec3 portal_corner{0}, portal_x{1, 0, 0}, portal_y{0, 1, 0};  // metres; the edges are perpendicular
+  static constexpr auto fields = std::make_tuple(
+      &Light::kind, &Light::spectrum, &Light::scale, &Light::two_sided, &Light::image, &Light::cosine_power,
+      &Light::is_power, &Light::cone_deg, &Light::falloff_deg, &Light::angular_diameter_deg, &Light::fov_deg,
+      &Light::has_portal, &Light::portal_corner, &Light::portal_x, &Light::portal_y);
 };
 
 enum class CameraKind : uint32_t { perspective, orthographic, spherical };

@@ -4,6 +4,7 @@
 
 #include "engine/ecs/scene.h"
 #include "engine/sampling/distribution.h"
+#include "engine/sampling/window_distribution.h"
 #include "engine/simd/column.h"
 #include "engine/streams.h"
 
@@ -100,7 +101,7 @@ struct MediumColumns {
 // A path's media, highest priority first: four rows of 16 bits, the first in the low half of [0].
 inline constexpr uint32_t media_stack_size = 4, largest_medium = 0xffff;
 
-// A light that can be chosen: one triangle or quadric, a point, a direction or a disc of directions, or the
+// A light that can be chosen: one triangle or quadric, a point, a direction or a disc of directions, or an
 // environment.
 enum class LightShape : uint32_t {
   triangle,
@@ -109,50 +110,81 @@ enum class LightShape : uint32_t {
   disk,
   point,  // shapes before this one have an area
   spot,
+  goniometric,
+  projection,
   directional,
   distant_disk,
   environment
 };
 // Abstract lights have no extent: nothing runs into them, and one direction is all there is to sample.
-constexpr bool is_abstract(LightShape shape) {
-  return shape == LightShape::point || shape == LightShape::spot || shape == LightShape::directional;
-}
+constexpr bool is_abstract(LightShape shape) { return shape >= LightShape::point && shape <= LightShape::directional; }
 struct LightRow {
   uint32_t shape = 0;  // LightShape
   uint32_t spectrum = 0;
   float scale = 0;
   uint32_t two_sided = 0;
   float choice_probability = 0;
-  // triangle: a vertex and two edges. sphere, ellipsoid, disk: centre, and `axes`. point, spot: position.
+  // triangle: a vertex and two edges. sphere, ellipsoid, disk: centre, and `axes`. point, spot, goniometric,
+  // projection: position.
   // directional, distant_disk: the direction towards the (centre of the) light.
   float p[3] = {};
   // triangle: two edges. quadrics: world images of the local x, y, z axes (times the radius).
   // spot: 1 - cos of the cone's half angle; 1 / (its difference to that where the falloff starts).
-  // distant_disk: 1 - cos of the half angle.
+  // distant_disk: 1 - cos of the half angle. projection: half the image's width and height at unit distance.
   float axes[9] = {};
-  float normal[3] = {};   // triangle, disk: unit normal of the emitting side. spot: unit direction of its axis
-  float area = 0;         // m^2
-  float inverse[9] = {};  // ellipsoid: rows of the inverse of `axes` as columns
+  float normal[3] = {};  // triangle, disk: unit normal of the emitting side. spot: unit direction of its axis
+  float area = 0;        // m^2
+  // sphere, ellipsoid: rows of the inverse of `axes` as columns. goniometric, projection: world to local.
+  // triangle: uv of the first vertex, and what the others' have more, where it has an image.
+  float inverse[9] = {};
   union {
     float normal_sign = 1;  // sphere, ellipsoid: -1 emits inwards
     float inner;            // disk: inner radius / radius
+    uint32_t mapping;       // goniometric: ImageMapping
   };
   float cosine_power = 0;  // shapes with an area: radiance goes with cos^cosine_power
 };
 static_assert(sizeof(LightRow) == 32 * sizeof(float));
 
-// Radiance from infinity: a spectrum, and where there is an image, per texel RGB fitted to spectra.
-struct Environment {
-  uint32_t light = no_index;  // its row of lights; no_index: black
-  uint32_t width = 0, height = 0;
-  ImageMapping mapping = ImageMapping::latitude_longitude;
+// An image that is a factor on a light's spectrum: RGB fitted to spectra. nearest: the texel, as pbrt-v4 reads images
+// of equal areas. linear: between the texels' centres, clamped at the image's edges, or around the circle in u.
+enum class ImageLookup : uint32_t { nearest, linear, linear_around };
+struct LightImage {
+  uint32_t first_texel = 0, width = 0, height = 0;
+  uint32_t lookup = 0;         // ImageLookup
+  uint32_t source = no_index;  // ImageId: rows of one image share its texels
+  float weight = 1;            // integral of its luminance over the directions it is sent to, sr; on a shape its mean
+  uint32_t padding[2] = {};
+};
+static_assert(sizeof(LightImage) == 8 * sizeof(uint32_t));
+struct LightImages {
+  Column<LightImage> rows;
   // Four per texel: sigmoid coefficients c0 c1 c2 and scale; in RGB mode the texel's three coefficients and 0.
   Column<float> texels;
   bool has_coefficients = false;
-  Distribution2D density;     // over the image's square, proportional to the texels' luminance times the measure
-  double mean_luminance = 1;  // of the image over the sphere
+};
+
+// A rectangle by which the light of an environment enters.
+struct Portal {
+  // Rows: unit vectors along the width, along the height, and through it, against the light.
+  float frame[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  float corner[3] = {};
+  float width = 0, height = 0;  // metres; 0: there is no portal
+  // Of directions, by the angles that their projections on the frame's xz and yz planes make with z, each from -pi / 2
+  // to pi / 2 as 0 to 1: lines of a window's edges are lines of constant angle.
+  WindowDistribution density;
+};
+
+// Radiance from infinity: a spectrum, and where there is an image, times that.
+struct Environment {
+  uint32_t light = no_index;  // its row of lights
+  uint32_t image = no_index;  // its row of images
+  ImageMapping mapping = ImageMapping::latitude_longitude;
+  Distribution2D density;  // over the image's square, proportional to the texels' luminance times the measure
   float to_world[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // rotation, row-major; to_local is its inverse
   float to_local[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  Portal portal;
+  bool has_portal() const { return portal.width > 0; }
 };
 
 // A pixel coordinate (x, y), y down, is seen along direction = normalize(axis + x right + y down) from `origin`
@@ -200,10 +232,12 @@ struct World {
   MediumColumns media;
   uint32_t camera_media[2] = {0, 0};  // the stack that paths start with
   Column<LightRow> lights;
+  Column<uint32_t> image_of_light;  // its row of images, or no_index
+  LightImages light_images;
   std::vector<uint32_t> distant_disks;  // the rows of lights of that shape: rays that leave the scene run into them
   Distribution1D light_choice;          // over the rows of lights that are sampled; empty where there is none
   Column<uint32_t> summed_lights;  // rows of abstract lights that are summed one by one (local, recursive), not sampled
-  Environment environment;
+  std::vector<Environment> environments;  // rays that leave the scene run into all of them
   TextureSet textures;
   // By kind and row: what bends the shading normal. A program of TextureSet, or their number plus a row of normal_maps;
   // no_index: nothing. Columns end with the last that has one.
@@ -223,7 +257,10 @@ struct World {
   bool has_textured_alpha = false;  // some roughness varies
   bool has_bumps = false;
   bool has_masks = false;  // some object's alpha is not 1
+  bool has_portals = false;       // some environment's light depends on where a ray that leaves the scene came from
+  bool has_shape_images = false;  // some shape emits an image
   bool has_textures() const { return !textures.programs.empty() || !textures.normal_maps.empty(); }
+  bool needs_uvs() const { return has_textures() || has_shape_images; }
   uint64_t zero_area_triangles = 0;
   std::unique_ptr<Accelerator, void (*)(Accelerator*)> accelerator{nullptr, nullptr};
 };

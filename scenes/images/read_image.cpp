@@ -54,6 +54,25 @@ std::vector<float> alpha_of(const std::vector<float>& all, size_t channels, int 
   return is_one ? std::vector<float>() : alpha;
 }
 
+// The colour space whose primaries and white the file names, to a thousandth, which is what pbrt-v4 takes for the same;
+// sRGB where it names none, and with a warning where it names others.
+ColorSpace color_space_of(const OIIO::ImageSpec& spec, const std::string& path, Diagnostics& diagnostics) {
+  float named[8];
+  if (!spec.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), named)) return ColorSpace::srgb;
+  for (size_t i = 0; i < color_space_count; ++i) {
+    const auto space = static_cast<ColorSpace>(i);
+    const Matrix3& to_xyz = rgb_to_xyz(space);
+    double worst = 0;
+    for (size_t c = 0; c < 4; ++c) {
+      const auto [x, y] = chromaticity(c < 3 ? Color3{to_xyz[0][c], to_xyz[1][c], to_xyz[2][c]} : white_xyz(space));
+      worst = std::max({worst, std::abs(x - double{named[2 * c]}), std::abs(y - double{named[2 * c + 1]})});
+    }
+    if (worst < 1e-3) return space;
+  }
+  diagnostics.warning({path, 0}, "its chromaticities are those of no known colour space; it is read as sRGB");
+  return ColorSpace::srgb;
+}
+
 bool check_pixels(const Image& image, bool allows_negative, Diagnostics& diagnostics) {
   const float least = allows_negative ? -std::numeric_limits<float>::max() : 0;
   size_t count = 0, first = 0;
@@ -94,6 +113,7 @@ bool read_image(const std::string& path, const SourceLocation& named_at, Image& 
   image.name = path;
   image.width = static_cast<uint32_t>(spec.width);
   image.height = static_cast<uint32_t>(spec.height);
+  image.color_space = color_space_of(spec, path, diagnostics);
   const auto channel_count = static_cast<size_t>(spec.nchannels);
   std::vector<float> all;
   try {

@@ -49,15 +49,19 @@ constexpr KeySpec geometry_mesh[] = {{"type", required}, {"mesh", required}, {"f
 constexpr KeySpec geometry_sphere[] = {{"type", required}, {"radius"}, {"flip_normal"}};
 constexpr KeySpec geometry_disk[] = {{"type", required}, {"radius"}, {"inner_radius"}, {"height"}, {"flip_normal"}};
 constexpr KeySpec geometry_rectangle[] = {{"type", required}, {"width"}, {"depth"}, {"flip_normal"}};
-constexpr KeySpec light_area[] = {{"type", required}, {"radiance"},     {"luminance"}, {"nits"},      {"lumens"},
-                                  {"spectrum"},       {"cosine_power"}, {"scale"},     {"two_sided"}, {"power"}};
+constexpr KeySpec light_area[] = {{"type", required}, {"radiance"}, {"luminance"}, {"nits"},  {"lumens"}, {"spectrum"},
+                                  {"cosine_power"},   {"scale"},    {"two_sided"}, {"power"}, {"image"},  {"space"}};
 constexpr KeySpec light_point[] = {{"type", required}, {"intensity"}, {"candela"}, {"lumens"}, {"spectrum"}, {"scale"}};
 constexpr KeySpec light_spot[] = {{"type", required}, {"intensity"},  {"candela"},       {"lumens"},
                                   {"spectrum"},       {"cone_angle"}, {"falloff_start"}, {"scale"}};
 constexpr KeySpec light_directional[] = {{"type", required}, {"irradiance"},       {"lux"},
                                          {"spectrum"},       {"angular_diameter"}, {"scale"}};
-constexpr KeySpec light_environment[] = {{"type", required}, {"radiance"}, {"luminance"}, {"nits"}, {"spectrum"},
-                                         {"scale"},          {"image"},    {"mapping"},   {"space"}};
+constexpr KeySpec light_environment[] = {{"type", required}, {"radiance"}, {"luminance"}, {"nits"},  {"spectrum"},
+                                         {"scale"},          {"image"},    {"mapping"},   {"space"}, {"portal"}};
+constexpr KeySpec light_goniometric[] = {{"type", required}, {"intensity"},       {"candela"}, {"lumens"}, {"spectrum"},
+                                         {"scale"},          {"image", required}, {"mapping"}, {"space"}};
+constexpr KeySpec light_projection[] = {{"type", required}, {"intensity"},       {"candela"}, {"lumens"}, {"spectrum"},
+                                        {"scale"},          {"image", required}, {"fov"},     {"space"}};
 constexpr KeySpec light_sky[] = {{"type", required}, {"turbidity"}, {"sun_elevation"},
                                  {"sun_azimuth"},    {"sun"},       {"ground_albedo"},
                                  {"resolution"},     {"up"},        {"scale"}};
@@ -106,6 +110,8 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"light.spot", light_spot},
                                 {"light.directional", light_directional},
                                 {"light.environment", light_environment},
+                                {"light.goniometric", light_goniometric},
+                                {"light.projection", light_projection},
                                 {"light.sky", light_sky},
                                 {"camera.perspective", camera_perspective},
                                 {"camera.orthographic", camera_orthographic},

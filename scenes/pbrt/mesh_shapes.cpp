@@ -164,7 +164,7 @@ std::optional<ReadMesh> read_loop_mesh(Reader& reader, Parameters& parameters) {
 std::optional<ReadMesh> read_bilinear_mesh(Reader& reader, Parameters& parameters) {
   Mesh patches, mesh;
   mesh.name = place_name(reader, parameters.source());
-  parameters.unsupported("emissionfilename", "the light emits evenly");
+  parameters.string("emissionfilename", "");  // where pbrt looks for light: it changes its noise only
   if (!read_vertices(parameters, patches, 4) || !validate_patches(parameters, patches)) return std::nullopt;
   bool all_flat = true;
   for (size_t i = 0; i < patches.indices.size(); i += 4)

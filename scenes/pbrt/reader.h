@@ -21,7 +21,8 @@ struct AreaLight {
   bool on = false;
   SpectrumId spectrum = 0;
   double scale = 1;   // includes the division by the spectrum's luminance
-  double power = -1;  // per shape, in pbrt's sense; negative: not given
+  double power = -1;  // per shape, in pbrt's sense, over the image's mean; negative: not given
+  ImageId image = no_index;
   bool two_sided = false;
 };
 

@@ -116,6 +116,7 @@ Light to_light(Parameters& parameters, const AreaLight& area_light, double area)
   light.spectrum = area_light.spectrum;
   light.scale = to_light_scale(parameters, scale);
   light.two_sided = area_light.two_sided ? 1 : 0;
+  light.image = area_light.image;
   return light;
 }
 

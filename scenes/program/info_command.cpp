@@ -93,8 +93,9 @@ SceneInfo gather(const LoadedScene& loaded, const BuiltWorld& built) {
   info.zero_area_triangles = world.zero_area_triangles;
   info.materials = count_kinds<MaterialKind, 6>(scene.registry.table<Material>().column<&Material::kind>(),
                                                 {"diffuse", "conductor", "dielectric", "rough", "coated", "smooth"});
-  info.lights = count_kinds<LightKind, 5>(scene.registry.table<Light>().column<&Light::kind>(),
-                                          {"area", "point", "spot", "directional", "environment"});
+  info.lights =
+      count_kinds<LightKind, 7>(scene.registry.table<Light>().column<&Light::kind>(),
+                                {"area", "point", "spot", "directional", "environment", "goniometric", "projection"});
   info.light_choices = world.lights.size();
   info.spectra = scene.spectra.size();
   info.images = scene.images.size();

@@ -84,7 +84,10 @@ BuiltWorld build_world(const LoadedScene& loaded, const std::string& path, Remar
 
 size_t world_bytes(const World& world) {
   const ObjectColumns& o = world.objects;
-  const Environment& e = world.environment;
+  size_t environments = 0;
+  for (const Environment& e : world.environments)
+    environments += bytes_of(e.density.marginal, e.density.conditional, e.density.marginal_guide,
+                             e.density.conditional_guide, e.portal.density.sums);
   return bytes_of(o.kind, o.first_triangle, o.triangle_count, o.shade_kind, o.material, o.first_light, o.placement,
                   o.visibility, o.first_key, o.key_count) +
          bytes_of(world.positions, world.normals, world.uvs, world.triangle_vertices, world.placements,
@@ -94,8 +97,9 @@ size_t world_bytes(const World& world) {
          bytes_of(world.diffuse.reflectance, world.conductor.eta, world.conductor.kappa, world.conductor.alpha_x,
                   world.conductor.alpha_y, world.conductor.schlick, world.dielectric.eta, world.dielectric.schlick,
                   world.dielectric.dispersive) +
-         bytes_of(world.lights, world.light_choice.cdf, e.texels, e.density.marginal, e.density.conditional,
-                  world.spectra);
+         environments +
+         bytes_of(world.lights, world.image_of_light, world.light_images.rows, world.light_images.texels,
+                  world.light_choice.cdf, world.spectra);
 }
 
 }  // namespace metamer

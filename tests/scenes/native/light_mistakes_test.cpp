@@ -48,6 +48,17 @@ TEST(NativeLightMistakes, AreNamedWithWhatWasExpected) {
       "scene.json:2: error: 'resolution' is 9; expected an even number, so that the horizon falls between two rows\n"
       "scene.json:3: error: 'up' is the string \"x\"; expected 'y' or 'z' (did you mean 'y'?)\n"
       "scene.json:3: error: 'scale' is the number -1; expected a number of at least 0\n");
+  EXPECT_EQ(messages_of_light(R"("type": "environment", "nits": 3, "portal": [[0, 0, 0], [1, 0, 0]])"),
+            "scene.json:2: error: 'portal' has 2 points; expected 4\n");
+  EXPECT_EQ(
+      messages_of_light(R"("type": "environment", "nits": 3, "portal": [[0, 0, 0], [1, 0, 0], [1, 1, 1], [0, 1, 0]])"),
+      "scene.json:2: error: 'portal': its corners are not those of a rectangle, one after the other\n");
+  EXPECT_THAT(messages_of_light(R"("type": "environment", "nits": 3, "portal": 4)"),
+              HasSubstr("four points [x, y, z]"));
+  EXPECT_EQ(messages_of_light(R"("type": "projection", "candela": 3, "fov": 180)"),
+            "scene.json:2: error: 'light' has no 'image'\n"
+            "scene.json:2: error: 'fov' is the number 180; expected a number above 0 and below 180\n");
+  EXPECT_THAT(messages_of_light(R"("type": "gonometric", "candela": 3)"), HasSubstr("did you mean 'goniometric'"));
   EXPECT_THAT(messages_of_light(R"("type": "sky", "turbidty": 3)"), HasSubstr("did you mean 'turbidity'"));
 }
 
