@@ -75,6 +75,17 @@ JsonText JsonText::numbers(std::span<const float> values) {
   return result;
 }
 
+JsonText JsonText::number(double value) {
+  const std::string text = fmt::format("{}", value);
+  return {Kind::scalar, text == "-0" ? "-0.0" : text};
+}
+
+JsonText JsonText::numbers(std::span<const double> values) {
+  JsonText result = array();
+  for (const double value : values) result.add(number(value));
+  return result;
+}
+
 JsonText& JsonText::add(JsonText item) {
   width_ += item.width_ + 2;
   is_broken_ = is_broken_ || item.is_broken_;

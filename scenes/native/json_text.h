@@ -18,12 +18,14 @@ std::string number_text(float value);
 class JsonText {
  public:
   static JsonText number(float value) { return {Kind::scalar, number_text(value)}; }
+  static JsonText number(double value);
   static JsonText decimal(std::string digits) { return {Kind::scalar, std::move(digits)}; }
   static JsonText integer(uint64_t value) { return {Kind::scalar, std::to_string(value)}; }
   static JsonText boolean(bool value) { return {Kind::scalar, value ? "true" : "false"}; }
   static JsonText string(std::string_view text);
   static JsonText array() { return {Kind::array, {}}; }
   static JsonText numbers(std::span<const float> values);
+  static JsonText numbers(std::span<const double> values);
   static JsonText object() { return {Kind::object, {}}; }
 
   JsonText& add(JsonText item);

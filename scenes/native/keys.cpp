@@ -17,12 +17,21 @@ constexpr KeySpec spectrum[] = {{"constant"}, {"table"}, {"named"},   {"blackbod
                                 {"space"},    {"scale"}, {"samples"}, {"sigmoid"},   {"times"}};
 constexpr KeySpec texture_reference[] = {{"texture", required}};
 constexpr KeySpec texture_constant[] = {{"type", required}, {"value", required}, {"number"}};
-constexpr KeySpec texture_image[] = {{"type", required}, {"image", required}, {"encoding"}, {"space"}, {"wrap"},
-                                     {"filter"},         {"scale"},           {"invert"},   {"uv"},    {"number"}};
-constexpr KeySpec texture_checkerboard[] = {{"type", required}, {"a"}, {"b"}, {"uv"}, {"number"}};
+constexpr KeySpec texture_image[] = {{"type", required}, {"image", required}, {"encoding"}, {"space"},   {"wrap"},
+                                     {"filter"},         {"scale"},           {"invert"},   {"mapping"}, {"number"}};
+constexpr KeySpec texture_checkerboard[] = {{"type", required}, {"a"}, {"b"}, {"mapping"}, {"number"}};
 constexpr KeySpec texture_scale[] = {{"type", required}, {"a", required}, {"b"}, {"number"}};
 constexpr KeySpec texture_mix[] = {{"type", required}, {"a", required}, {"b", required}, {"amount"}, {"number"}};
-constexpr KeySpec uv[] = {{"scale"}, {"offset"}};
+constexpr KeySpec texture_coordinate[] = {{"type", required}, {"axis"}, {"mapping"}};
+constexpr KeySpec texture_facing[] = {{"type", required}, {"direction"}};
+constexpr KeySpec texture_dots[] = {{"type", required}, {"mapping"}};
+constexpr KeySpec texture_noise[] = {{"type", required}, {"octaves"}, {"roughness"}, {"mapping"}};
+constexpr KeySpec texture_windy[] = {{"type", required}, {"mapping"}};
+constexpr KeySpec texture_marble[] = {{"type", required}, {"scale"},     {"variation"},
+                                      {"octaves"},        {"roughness"}, {"mapping"}};
+constexpr KeySpec mapping_uv[] = {{"type", required}, {"scale"}, {"offset"}};
+constexpr KeySpec mapping_in_space[] = {{"type", required}, {"to_texture"}};
+constexpr KeySpec mapping_planar[] = {{"type", required}, {"to_texture"}, {"u_axis"}, {"v_axis"}, {"offset"}};
 constexpr KeySpec material_diffuse[] = {{"type", required}, {"reflectance", required}};
 constexpr KeySpec material_rough[] = {{"type", required}, {"kd"}, {"ks"}, {"shininess"}, {"normalized"}};
 constexpr KeySpec material_coated[] = {{"type", required}, {"reflectance", required}, {"glass"}, {"eta"}, {"roughness"},
@@ -85,7 +94,18 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"texture.checkerboard", texture_checkerboard},
                                 {"texture.scale", texture_scale},
                                 {"texture.mix", texture_mix},
-                                {"uv", uv},
+                                {"texture.coordinate", texture_coordinate},
+                                {"texture.facing", texture_facing},
+                                {"texture.dots", texture_dots},
+                                {"texture.fbm", texture_noise},
+                                {"texture.wrinkled", texture_noise},
+                                {"texture.windy", texture_windy},
+                                {"texture.marble", texture_marble},
+                                {"mapping.uv", mapping_uv},
+                                {"mapping.spherical", mapping_in_space},
+                                {"mapping.cylindrical", mapping_in_space},
+                                {"mapping.planar", mapping_planar},
+                                {"mapping.point", mapping_in_space},
                                 {"material.diffuse", material_diffuse},
                                 {"material.rough", material_rough},
                                 {"material.coated", material_coated},

@@ -26,13 +26,17 @@ void read_roughness(const SceneContext& context, const JsonObject& object, Mater
 }
 
 // A spectrum, or a texture in its place.
-void read_reflectance(SceneContext& context, const JsonObject& object, Material& material) {
-  const Json::Value* value = object.find("reflectance");
+void read_albedo(SceneContext& context, const JsonObject& object, std::string_view key, SpectrumId& spectrum,
+                 TextureId& texture) {
+  const Json::Value* value = object.find(key);
   if (value == nullptr) return;  // reported
   if (is_texture(*value))
-    material.reflectance_texture = read_texture_reference(context, *value, false).value_or(no_index);
+    texture = read_texture_reference(context, *value, false).value_or(no_index);
   else
-    material.reflectance = read_spectrum(context, *value, "reflectance", Quantity::reflectance);
+    spectrum = read_spectrum(context, *value, key, Quantity::reflectance);
+}
+void read_reflectance(SceneContext& context, const JsonObject& object, Material& material) {
+  read_albedo(context, object, "reflectance", material.reflectance, material.reflectance_texture);
 }
 
 // Both terms may be left out; the glossy one needs its exponent.
@@ -125,11 +129,8 @@ void read_coated(SceneContext& context, const JsonObject& object, Material& mate
 
 void read_sheet(SceneContext& context, const JsonObject& object, Material& material) {
   material.kind = MaterialKind::diffuse_transmission;
-  const auto read = [&](std::string_view key, SpectrumId& albedo) {
-    if (object.has(key)) albedo = read_spectrum(context, *object.find(key), key, Quantity::reflectance);
-  };
-  read("reflectance", material.reflectance);
-  read("transmittance", material.transmittance);
+  read_reflectance(context, object, material);
+  read_albedo(context, object, "transmittance", material.transmittance, material.transmittance_texture);
 }
 
 // Of two entries of "materials".
@@ -155,8 +156,7 @@ void read_mix(SceneContext& context, const JsonObject& object, Material& materia
 void read_layered(SceneContext& context, const JsonObject& object, Material& material) {
   constexpr uint32_t deepest = 1000000;
   material.kind = MaterialKind::layered;
-  if (object.has("reflectance"))
-    material.reflectance = read_spectrum(context, *object.find("reflectance"), "reflectance", Quantity::reflectance);
+  read_reflectance(context, object, material);
   constexpr std::string_view ways[] = {"glass", "eta"};
   const std::string_view way = object.one_of(ways);
   if (way == "glass") material.eta = read_glass(context, *object.find("glass"));

@@ -9,8 +9,23 @@ namespace metamer {
 namespace {
 
 // In the order of the enumerations.
-constexpr std::string_view wrap_names[] = {"repeat", "clamp", "black"};
+constexpr std::string_view wrap_names[] = {"repeat", "clamp", "black", "octahedral"};
 constexpr std::string_view filter_names[] = {"linear", "nearest"};
+constexpr uint32_t most_texture_octaves = 64;  // beyond, a cell of the noise is smaller than a float can tell
+constexpr std::string_view axis_names[] = {"u", "v", "w"};
+
+// Functions of the place without operands.
+struct Pattern {
+  std::string_view type;
+  TextureKind kind;
+};
+constexpr Pattern patterns[] = {{"coordinate", TextureKind::coordinate},
+                                {"facing", TextureKind::facing},
+                                {"dots", TextureKind::dots},
+                                {"fbm", TextureKind::fbm},
+                                {"wrinkled", TextureKind::wrinkled},
+                                {"windy", TextureKind::windy},
+                                {"marble", TextureKind::marble}};
 
 TextureId add_texture(SceneContext& context, const Texture& texture) {
   context.scene.textures.push_back(texture);
@@ -35,6 +50,8 @@ class TextureReader {
       : context_(context), reader_(context.reader), object_(object) {}
 
   TextureId read() {
+    for (const Pattern& known : patterns)
+      if (object_.type() == known.type) return pattern(known.kind);
     texture_.is_number = object_.boolean("number", false) ? 1 : 0;
     if (object_.type() == "constant") {
       value();
@@ -83,15 +100,77 @@ class TextureReader {
     return add_texture(context_, constant);
   }
 
+  TextureId pattern(TextureKind kind) {
+    using Kind = TextureMapping::Kind;
+    texture_.kind = kind;
+    texture_.is_number = kind != TextureKind::marble;
+    const bool has_coordinates = kind == TextureKind::coordinate || kind == TextureKind::dots;
+    texture_.mapping.kind = has_coordinates || kind == TextureKind::facing ? Kind::uv : Kind::point;
+    if (kind == TextureKind::facing) {
+      numbers("direction", any_number, texture_.axis_direction);
+      return add_texture(context_, texture_);
+    }
+    mapping();
+    if (kind == TextureKind::coordinate) texture_.axis = static_cast<uint32_t>(object_.choice("axis", axis_names, 0));
+    if (kind == TextureKind::fbm || kind == TextureKind::wrinkled || kind == TextureKind::marble) {
+      texture_.octaves = object_.integer("octaves", 0, most_texture_octaves, texture_.octaves);
+      texture_.roughness = object_.number_f("roughness", any_number, texture_.roughness);
+    }
+    if (kind == TextureKind::marble) {
+      texture_.scale = object_.number_f("scale", any_number, texture_.scale);
+      texture_.variation = object_.number_f("variation", any_number, texture_.variation);
+    }
+    return add_texture(context_, texture_);
+  }
+
+  template <size_t N>
+  static void store(const std::array<double, N>& from, float* to) {
+    for (size_t i = 0; i < N; ++i) to[i] = static_cast<float>(from[i]);
+  }
+  void numbers(std::string_view key, const Range& range, float (&out)[3]) {
+    std::array<double, 3> read{out[0], out[1], out[2]};
+    if (object_.has(key) && reader_.numbers(*object_.find(key), key, range, read)) store(read, out);
+  }
+
   void mapping() {
-    const Json::Value* value = object_.find("uv");
+    using Kind = TextureMapping::Kind;
+    const Json::Value* value = object_.find("mapping");
     if (value == nullptr) return;
-    const JsonObject uv(reader_, *value, *find_object_spec("uv"), "uv");
-    std::array<double, 2> scale{1, 1}, offset{0, 0};
-    if (uv.has("scale")) reader_.numbers(*uv.find("scale"), "scale", any_number, scale);
-    if (uv.has("offset")) reader_.numbers(*uv.find("offset"), "offset", any_number, offset);
-    texture_.mapping = {static_cast<float>(scale[0]), static_cast<float>(scale[1]), static_cast<float>(offset[0]),
-                        static_cast<float>(offset[1])};
+    const JsonObject object(reader_, *value, "mapping");
+    if (!object.is_valid()) return;
+    TextureMapping mapping;
+    mapping.kind = object.type() == "uv"            ? Kind::uv
+                   : object.type() == "spherical"   ? Kind::spherical
+                   : object.type() == "cylindrical" ? Kind::cylindrical
+                   : object.type() == "planar"      ? Kind::planar
+                                                    : Kind::point;
+    const auto pair = [&](std::string_view key, float& u, float& v) {
+      std::array<double, 2> read{u, v};
+      if (object.has(key) && reader_.numbers(*object.find(key), key, any_number, read)) {
+        u = static_cast<float>(read[0]);
+        v = static_cast<float>(read[1]);
+      }
+    };
+    const auto axis = [&](std::string_view key, float(&out)[3]) {
+      std::array<double, 3> read{};
+      if (object.has(key) && reader_.numbers(*object.find(key), key, any_number, read)) store(read, out);
+    };
+    const bool is_uv = mapping.kind == Kind::uv, is_planar = mapping.kind == Kind::planar;
+    if (is_uv) pair("scale", mapping.u_scale, mapping.v_scale);
+    if (is_uv || is_planar) pair("offset", mapping.u_offset, mapping.v_offset);
+    if (is_planar) axis("u_axis", mapping.u_axis);
+    if (is_planar) axis("v_axis", mapping.v_axis);
+    if (!is_uv && object.has("to_texture")) rows(*object.find("to_texture"), mapping.to_texture);
+    texture_.mapping = mapping;
+  }
+
+  void rows(const Json::Value& value, float (&matrix)[12]) {
+    if (!value.isArray() || value.size() != 3)
+      return reader_.expected(value, "to_texture", "three rows of four numbers");
+    for (Json::ArrayIndex row = 0; row < 3; ++row) {
+      std::array<double, 4> read{};
+      if (reader_.numbers(value[row], "to_texture", any_number, read)) store(read, matrix + 4 * row);
+    }
   }
 
   void image() {

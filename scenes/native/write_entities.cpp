@@ -65,6 +65,9 @@ JsonText write_camera(const Camera& camera) {
       object.add("type", JsonText::string("orthographic"));
       object.add("screen_height", JsonText::number(camera.screen_height));
       break;
+    case CameraKind::spherical:
+      object.add("type", JsonText::string("spherical"));
+      return object.add("mapping", JsonText::string(mapping_name(camera.mapping)));
   }
   if (camera.lens_radius != 0) object.add("lens_radius", JsonText::number(camera.lens_radius));
   if (camera.focal_distance != 1) object.add("focal_distance", JsonText::number(camera.focal_distance));
@@ -115,8 +118,8 @@ class EntityWriter {
              (!registry_.has<Material>(entity) || is_marked(is_parent_, entity));
     };
     std::vector<Entity> places;
-    for (const Column<Entity>* owners : {&registry_.table<Transform>().owners(), &registry_.table<Name>().owners(),
-                                         &registry_.table<Parent>().owners()})
+    for (const Column<Entity>* owners : {&registry_.table<Transform>().owners(), &registry_.table<Motion>().owners(),
+                                         &registry_.table<Name>().owners(), &registry_.table<Parent>().owners()})
       for (const Entity entity : *owners)
         if (only_places(entity)) places.push_back(entity);
     for (const Entity& entity : registry_.table<Parent>().column<&Parent::entity>())
@@ -157,13 +160,14 @@ class EntityWriter {
     };
     add_name("name", context_.names, entity);
     if (registry_.has<Parent>(entity)) add_name("parent", context_.names, registry_.get<Parent>(entity).entity);
-    const Transform transform = transform_in_file(entity);
+    const Transform transform = as_in_file(entity, registry_.get<Transform>(entity));
     if (!same_bits(transform, Transform{})) object.add("transform", write_transform(transform));
+    if (registry_.has<Motion>(entity)) object.add("motion", write_motion(entity));
     if (registry_.has<Camera>(entity)) {
       object.add("camera", write_camera(registry_.get<Camera>(entity)));
       if (registry_.has<Geometry>(entity) || registry_.has<Light>(entity))
         context_.mistakes.push_back(
-            fmt::format("{} is a camera and a shape or light at once", context_.scene.describe(entity)));
+            fmt::format("that {} is a camera and a shape or light at once", context_.scene.describe(entity)));
     }
     if (registry_.has<Geometry>(entity)) {
       object.add("geometry", write_geometry(context_, registry_.get<Geometry>(entity)));
@@ -175,9 +179,15 @@ class EntityWriter {
     return object;
   }
 
+  JsonText write_motion(Entity entity) const {
+    const Motion motion = registry_.get<Motion>(entity);
+    JsonText object = JsonText::object();
+    object.add("end", write_transform(as_in_file(entity, {motion.row0, motion.row1, motion.row2})));
+    return object.add("times", JsonText::numbers(std::array{motion.start_time, motion.end_time}));
+  }
+
   // The mirrors of the reader (entities.cpp) undone.
-  Transform transform_in_file(Entity entity) const {
-    const Transform transform = registry_.get<Transform>(entity);
+  Transform as_in_file(Entity entity, const Transform& transform) const {
     const Entity parent = registry_.get<Parent>(entity).entity;
     const bool in_camera = !parent.is_null() && registry_.has<Camera>(parent);
     const Transform first = in_camera ? then_mirrored_z(transform) : transform;

@@ -3,14 +3,6 @@
 namespace metamer {
 namespace {
 
-std::string_view mapping_name(ImageMapping mapping) {
-  switch (mapping) {
-    case ImageMapping::latitude_longitude: return "latitude_longitude";
-    case ImageMapping::equal_area: return "equal_area";
-  }
-  return {};
-}
-
 class LightWriter {
  public:
   LightWriter(WriteContext& context, const Light& light) : context_(context), light_(light) {}
@@ -66,6 +58,14 @@ class LightWriter {
 };
 
 }  // namespace
+
+std::string_view mapping_name(ImageMapping mapping) {
+  switch (mapping) {
+    case ImageMapping::latitude_longitude: return "latitude_longitude";
+    case ImageMapping::equal_area: return "equal_area";
+  }
+  return {};
+}
 
 JsonText write_light(WriteContext& context, const Light& light) { return LightWriter(context, light).write(); }
 

@@ -17,6 +17,10 @@ class MaterialWriter {
       case MaterialKind::rough: return rough();
       case MaterialKind::coated: return coated();
       case MaterialKind::smooth: return smooth();
+      case MaterialKind::layered: return layered();
+      case MaterialKind::diffuse_transmission: return diffuse_transmission();
+      case MaterialKind::mix: return mix();
+      case MaterialKind::hair: context_.mistakes.push_back("a material of kind hair"); break;
     }
     return JsonText::object();
   }
@@ -74,13 +78,37 @@ class MaterialWriter {
     return object_;
   }
 
+  JsonText layered() {
+    type("layered");
+    reflectance();
+    spectrum("eta", material_.eta);
+    roughness();
+    object_.add("optical_thickness", JsonText::number(material_.layer.thickness));
+    object_.add("max_depth", JsonText::integer(material_.layer.max_depth));
+    return object_;
+  }
+
+  JsonText diffuse_transmission() {
+    type("diffuse_transmission");
+    reflectance();
+    albedo("transmittance", material_.transmittance_texture, material_.transmittance);
+    return object_;
+  }
+
+  JsonText mix() {
+    type("mix");
+    object_.add("first", JsonText::string(context_.material_names[material_.mix.first.index]));
+    object_.add("second", JsonText::string(context_.material_names[material_.mix.second.index]));
+    object_.add("amount", JsonText::number(material_.mix.amount));
+    return object_;
+  }
+
   void type(std::string_view name) { object_.add("type", JsonText::string(name)); }
   void spectrum(std::string_view key, SpectrumId id) { object_.add(key, context_.spectra.write(id)); }
-  void reflectance() {
-    object_.add("reflectance", material_.reflectance_texture != no_index
-                                   ? context_.texture(material_.reflectance_texture)
-                                   : context_.spectra.write_reflectance(material_.reflectance));
+  void albedo(std::string_view key, TextureId texture, SpectrumId id) {
+    object_.add(key, texture != no_index ? context_.texture(texture) : context_.spectra.write_reflectance(id));
   }
+  void reflectance() { albedo("reflectance", material_.reflectance_texture, material_.reflectance); }
   void roughness() {
     if (material_.alpha_x == 0 && material_.alpha_y == 0) return;
     if (material_.alpha_x == material_.alpha_y)
@@ -117,14 +145,15 @@ std::string wanted_name(const Scene& scene, Entity entity, uint32_t row) {
 
 JsonText write_materials(WriteContext& context) {
   const Table<Material>& table = context.scene.registry.table<Material>();
-  JsonText materials = JsonText::object().break_lines();
+  // Names first: a mix may be of any others.
   for (uint32_t row = 0; row < table.size(); ++row) {
     const Entity entity = table.owner(row);
-    const std::string name = context.entity_names.take(wanted_name(context.scene, entity, row));
     if (entity.index >= context.material_names.size()) context.material_names.resize(entity.index + 1);
-    context.material_names[entity.index] = name;
-    materials.add(name, MaterialWriter(context, table.get(row)).write());
+    context.material_names[entity.index] = context.entity_names.take(wanted_name(context.scene, entity, row));
   }
+  JsonText materials = JsonText::object().break_lines();
+  for (uint32_t row = 0; row < table.size(); ++row)
+    materials.add(context.material_names[table.owner(row).index], MaterialWriter(context, table.get(row)).write());
   return materials;
 }
 

@@ -139,7 +139,7 @@ FileError write_native(const Scene& scene, const std::string& path, const Cancel
   const std::string folder = side_folder(path);
   WriteContext context(scene, fs::path(folder).filename().string());
   const std::string text = scene_text(context).text();
-  if (!context.mistakes.empty()) return fmt::format("{}: {}", path, fmt::join(context.mistakes, "\n"));
+  if (!context.mistakes.empty()) return fmt::format("{}: cannot say: {}", path, fmt::join(context.mistakes, ", "));
   files.bytes = text.size();
   StagedFolder staged;
   const bool has_side_files = !context.meshes.empty() || !context.images.empty();

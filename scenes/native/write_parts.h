@@ -66,6 +66,7 @@ struct WriteContext {
 JsonText write_settings(const RenderSettings& settings);
 // Every Material of the registry in the order of its table, by a name of its own.
 JsonText write_materials(WriteContext& context);
+std::string_view mapping_name(ImageMapping mapping);
 JsonText write_light(WriteContext& context, const Light& light);
 // All entities that are more than a material, in an order that keeps the order of shapes, of lights and of cameras.
 JsonText write_entities(WriteContext& context);

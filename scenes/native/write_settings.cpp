@@ -35,6 +35,11 @@ JsonText write_settings(const RenderSettings& settings) {
   object.add("integrator", JsonText::string(integrator_name(settings.integrator)));
   if (!settings.shadows) object.add("shadows", JsonText::boolean(false));
   object.add("filter", write_filter(settings.filter));
+  const glm::dvec4& crop = settings.crop;
+  if (crop != usual.crop) object.add("crop", JsonText::numbers(std::array{crop.x, crop.y, crop.z, crop.w}));
+  if (!settings.pixel_jitter) object.add("pixel_jitter", JsonText::boolean(false));
+  if (settings.shutter_open != usual.shutter_open || settings.shutter_close != usual.shutter_close)
+    object.add("shutter", JsonText::numbers(std::array{settings.shutter_open, settings.shutter_close}));
   if (settings.exposure_stops != usual.exposure_stops)
     object.add("exposure", JsonText::number(settings.exposure_stops));
   if (settings.sensor_scale != usual.sensor_scale) object.add("sensor_scale", JsonText::number(settings.sensor_scale));

@@ -10,8 +10,52 @@ std::string_view wrap_name(TextureWrap wrap) {
     case TextureWrap::repeat: return "repeat";
     case TextureWrap::clamp: return "clamp";
     case TextureWrap::black: return "black";
+    case TextureWrap::octahedral: return "octahedral";
   }
   return {};
+}
+
+JsonText write_mapping(const TextureMapping& mapping) {
+  using Kind = TextureMapping::Kind;
+  JsonText object = JsonText::object();
+  const auto type = [&](std::string_view name) { object.add("type", JsonText::string(name)); };
+  const auto offset = [&] {
+    if (mapping.u_offset != 0 || mapping.v_offset != 0)
+      object.add("offset", JsonText::numbers(std::array{mapping.u_offset, mapping.v_offset}));
+  };
+  const auto space = [&] {
+    JsonText rows = JsonText::array();
+    for (size_t row = 0; row < 3; ++row) rows.add(JsonText::numbers(std::span(mapping.to_texture).subspan(4 * row, 4)));
+    object.add("to_texture", std::move(rows));
+  };
+  switch (mapping.kind) {
+    case Kind::uv:
+      type("uv");
+      if (mapping.u_scale != 1 || mapping.v_scale != 1)
+        object.add("scale", JsonText::numbers(std::array{mapping.u_scale, mapping.v_scale}));
+      offset();
+      break;
+    case Kind::spherical:
+      type("spherical");
+      space();
+      break;
+    case Kind::cylindrical:
+      type("cylindrical");
+      space();
+      break;
+    case Kind::planar:
+      type("planar");
+      space();
+      object.add("u_axis", JsonText::numbers(mapping.u_axis));
+      object.add("v_axis", JsonText::numbers(mapping.v_axis));
+      offset();
+      break;
+    case Kind::point:
+      type("point");
+      space();
+      break;
+  }
+  return object;
 }
 
 class TextureWriter {
@@ -42,6 +86,22 @@ class TextureWriter {
         operand("b", texture_.b);
         mapping();
         break;
+      case TextureKind::coordinate: {
+        constexpr std::string_view axes[] = {"u", "v", "w"};
+        type("coordinate");
+        object_.add("axis", JsonText::string(axes[texture_.axis]));
+        mapping();
+        return object_;
+      }
+      case TextureKind::facing:
+        type("facing");
+        object_.add("direction", JsonText::numbers(texture_.axis_direction));
+        return object_;
+      case TextureKind::dots: return pattern("dots");
+      case TextureKind::fbm: return pattern("fbm");
+      case TextureKind::wrinkled: return pattern("wrinkled");
+      case TextureKind::windy: return pattern("windy");
+      case TextureKind::marble: return pattern("marble");
     }
     if (texture_.is_number != 0) object_.add("number", JsonText::boolean(true));
     return object_;
@@ -74,14 +134,25 @@ class TextureWriter {
     mapping();
   }
 
+  JsonText pattern(std::string_view name) {
+    type(name);
+    if (texture_.kind == TextureKind::marble) {
+      object_.add("scale", JsonText::number(texture_.scale));
+      object_.add("variation", JsonText::number(texture_.variation));
+    }
+    if (texture_.kind != TextureKind::dots && texture_.kind != TextureKind::windy) {
+      object_.add("octaves", JsonText::integer(texture_.octaves));
+      object_.add("roughness", JsonText::number(texture_.roughness));
+    }
+    mapping();
+    return object_;
+  }
+
   void mapping() {
-    const UvMapping &uv = texture_.mapping, usual;
-    JsonText object = JsonText::object();
-    if (uv.u_scale != usual.u_scale || uv.v_scale != usual.v_scale)
-      object.add("scale", JsonText::numbers(std::array{uv.u_scale, uv.v_scale}));
-    if (uv.u_offset != usual.u_offset || uv.v_offset != usual.v_offset)
-      object.add("offset", JsonText::numbers(std::array{uv.u_offset, uv.v_offset}));
-    if (!object.empty()) object_.add("uv", std::move(object));
+    const TextureMapping& m = texture_.mapping;
+    const bool is_usual =
+        m.kind == TextureMapping::Kind::uv && m.u_scale == 1 && m.v_scale == 1 && m.u_offset == 0 && m.v_offset == 0;
+    if (!is_usual) object_.add("mapping", write_mapping(m));
   }
 
   WriteContext& context_;

@@ -23,6 +23,8 @@ void add_convert(CLI::App& app, ConvertArguments& arguments) {
   convert->footer(footer);
   convert->add_option("PATHS", arguments.paths, "The scene, pbrt-v4 or metamer JSON, and the .json file to write")
       ->type_name("");
+  convert->add_flag("--strict", arguments.strict,
+                    "Warnings and notes are errors, as long as the picture depends on them");
   convert->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");
 }
 

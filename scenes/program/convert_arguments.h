@@ -10,6 +10,7 @@ namespace metamer {
 
 struct ConvertArguments {
   std::vector<std::string> paths;  // SCENE and OUT.json
+  bool strict = false;             // what is not supported is an error
   bool quiet = false;
 };
 

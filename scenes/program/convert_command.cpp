@@ -31,7 +31,7 @@ int run_convert(const ConvertArguments& arguments) {
   if (is_same_file(source, target))
     throw Failure(exit_wrong_input, target + ": is the scene itself, another file was expected for the output");
   if (const FileError error = check_native_target(target)) throw Failure(exit_failed, *error);
-  const LoadedScene loaded = load_scene(source, {}, {arguments.quiet});
+  const LoadedScene loaded = load_scene(source, {}, {arguments.quiet, arguments.strict});
   install_signal_handlers(cancellation);
   save_when_interrupted();
   NativeFiles files;

@@ -57,7 +57,8 @@ inline std::unique_ptr<Film> tiny_film(Scene scene) {
   Diagnostics diagnostics;
   const std::unique_ptr<World> world = freeze(scene, diagnostics);
   if (world == nullptr) return nullptr;
-  auto film = std::make_unique<Film>(20, 14, scene.settings.band_count);
+  const TileRect rendered = rendered_pixels(scene.settings);
+  auto film = std::make_unique<Film>(rendered.width(), rendered.height(), scene.settings.band_count);
   RenderProgress progress;
   render(*world, {}, Cancellation(), progress, *film);
   return film;

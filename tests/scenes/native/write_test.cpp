@@ -24,25 +24,30 @@ constexpr size_t component_count<BasicRegistry<C...>> = sizeof...(C);
 // A new field is to be written in scenes/native/write_*.cpp and read beside; new kinds stop the compiler there (the
 // switches have no default). Counting is how the one who adds a field is told.
 TEST(NativeWriter, KnowsEveryFieldThatASceneHas) {
-  EXPECT_EQ(component_count<Registry>, 11u);
+  EXPECT_EQ(component_count<Registry>, 12u);
   EXPECT_EQ(field_count<Transform>, 3u);
+  EXPECT_EQ(field_count<Motion>, 5u);
   EXPECT_EQ(field_count<Parent>, 1u);
   EXPECT_EQ(field_count<Geometry>, 8u);
-  EXPECT_EQ(field_count<Material>, 15u);
+  EXPECT_EQ(field_count<Material>, 20u);
   EXPECT_EQ(field_count<MaterialSlot>, 1u);
   EXPECT_EQ(field_count<Light>, 10u);
-  EXPECT_EQ(field_count<Camera>, 6u);
+  EXPECT_EQ(field_count<Camera>, 7u);
   EXPECT_EQ(field_count<Name>, 1u);
   EXPECT_EQ(field_count<Visibility>, 1u);
   EXPECT_EQ(field_count<MediumSlot>, 2u);  // no system reads it
   EXPECT_EQ(field_count<Source>, 2u);      // a new file has lines of its own
-  EXPECT_EQ(sizeof(RenderSettings), 60u);
+  EXPECT_EQ(sizeof(RenderSettings), 112u);
   EXPECT_EQ(sizeof(Filter), 16u);
   const auto [name, width, height, rgb, mapping, color_space] = Image{};
   const auto [mesh_name, positions, normals, uvs, indices] = Mesh{};
   const auto [registry, spectra, meshes, images, textures, scene_names, settings] = Scene{};
-  const auto [kind, spectrum, value, is_number, image, wrap, nearest, invert, scale, uv, a, b, amount] = Texture{};
-  const auto [u_scale, v_scale, u_offset, v_offset] = UvMapping{};
+  const auto [kind, spectrum, value, is_number, image, wrap, nearest, invert, scale, texture_mapping, axis, direction,
+              octaves, roughness, variation, a, b, amount] = Texture{};
+  const auto [mapping_kind, u_scale, v_scale, u_offset, v_offset, to_texture, u_axis, v_axis] = TextureMapping{};
+  const auto [base, base_eta, base_kappa, alpha_x, alpha_y, thickness, albedo, asymmetry, max_depth, walks] = Layer{};
+  const auto [sigma_a, beta_m, beta_n, tilt_deg] = Hair{};
+  const auto [first, second, part] = Mix{};
 }
 
 double through_double(float value) { return std::strtod(number_text(value).c_str(), nullptr); }
@@ -243,6 +248,58 @@ TEST(NativeWriter, TexturesAreKeptAndTheirImagesCopied) {
   EXPECT_TRUE(files.contains("scene-files/wood-2.exr")) << "of an encoding that is not tried: its pixels";
   EXPECT_TRUE(files.at("scene-files/wood-3.exr") == original.at("wood.exr"));
   EXPECT_TRUE(files.at("scene-files/wood-4.png") == original.at("wood.png")) << "linear";
+  expect_converts(read.scene);
+}
+
+TEST(NativeWriter, PatternsAndMappingsAreKept) {
+  const ReadScene read = read_world(R"(LightSource "infinite"  Translate 0.5 0.1 3 Rotate 20 1 1 0
+    Texture "clouds" "float" "fbm" "integer octaves" 3 "float roughness" 0.7
+    Texture "folds" "float" "wrinkled"
+    Texture "waves" "float" "windy"
+    Texture "stone" "spectrum" "marble" "float variation" 0.6 "float scale" 2.5
+    Texture "dots" "spectrum" "dots" "rgb inside" [0.1 0.2 0.9] "spectrum outside" [400 0.1 700 0.9]
+      "string mapping" "planar" "vector3 v1" [2 0 0.1] "vector3 v2" [0 3 0] "float udelta" 0.2
+    Texture "board" "spectrum" "checkerboard" "integer dimension" 3 "texture tex1" "stone" "texture tex2" "dots"
+    Texture "ramp" "spectrum" "bilerp" "rgb v00" [1 0 0] "rgb v11" [0 0 1] "string mapping" "spherical"
+    Texture "side" "spectrum" "directionmix" "texture tex1" "board" "texture tex2" "ramp" "vector3 dir" [1 2 3]
+    Texture "cloudy" "spectrum" "mix" "texture tex1" "side" "texture tex2" "stone" "texture amount" "clouds"
+    Texture "folded" "spectrum" "scale" "texture tex" "cloudy" "texture scale" "folds"
+    Texture "round" "spectrum" "checkerboard" "string mapping" "cylindrical" "texture tex1" "folded"
+    Material "diffuse" "texture reflectance" "round" Shape "sphere"
+    Material "diffusetransmission" "texture reflectance" "stone" "rgb transmittance" [0.1 0.3 0.2]
+    Translate 1.5 0 0 Shape "sphere")");
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  ASSERT_NE(tiny_film(read.scene), nullptr);
+  expect_converts(read.scene);
+}
+
+TEST(NativeWriter, MaterialsOfOthersAreKept) {
+  const ReadScene read = read_world(R"(LightSource "infinite" Translate 0 0 4
+    MakeNamedMaterial "red" "string type" "diffuse" "rgb reflectance" [0.8 0.1 0.1]
+    MakeNamedMaterial "coat" "string type" "coateddiffuse" "float roughness" 0.2 "float thickness" 0.3
+    MakeNamedMaterial "both" "string type" "mix" "string materials" ["red" "coat"] "float amount" 0.3
+    NamedMaterial "both" Shape "sphere")");
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  ASSERT_NE(tiny_film(read.scene), nullptr);
+  expect_converts(read.scene);
+}
+
+TEST(NativeWriter, MotionCropAndShutterAreKept) {
+  const ReadScene read = read_text(R"(
+    Film "rgb" "integer xresolution" 40 "integer yresolution" 30 "float cropwindow" [0.1 0.7 0.25 0.9]
+    TransformTimes 0.25 1.5
+    ActiveTransform EndTime Translate 0.1 0 0.3 ActiveTransform All
+    Camera "spherical" "string mapping" "equalarea" "float shutteropen" 0.1 "float shutterclose" 0.7
+    WorldBegin LightSource "infinite" Translate 0 0 3
+    ActiveTransform EndTime Rotate 30 0 0 1 Translate 1 0 0 ActiveTransform All Shape "sphere" "float radius" 0.6)");
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  ASSERT_GT(read.count<Motion>(), 0u);
+  const Scene back = converted(read.scene);
+  EXPECT_EQ(back.registry.table<Motion>().size(), read.count<Motion>());
+  EXPECT_EQ(back.settings.crop, read.scene.settings.crop);
+  EXPECT_EQ(back.settings.shutter_close, 0.7);
+  EXPECT_EQ(back.registry.table<Camera>().get(0).mapping, ImageMapping::equal_area);
+  ASSERT_NE(tiny_film(read.scene), nullptr);
   expect_converts(read.scene);
 }
 
