@@ -13,7 +13,7 @@ Geometry masked(Geometry geometry, TextureId alpha) {
 double seen_through(TexturedScene& s, const Geometry& geometry, double x, double y, double width = 0.5) {
   s.b.scene.settings.integrator = Integrator::path;
   s.b.scene.settings.samples_per_pixel = 64;
-  s.b.add(geometry, s.b.diffuse(0));
+  s.b.add(geometry, s.b.diffuse(0.0));
   s.b.light(LightKind::environment, s.b.constant(1), 1);
   s.b.look_at({x, y, 3}, {x, y, 0}, orthographic(static_cast<float>(width)));
   return mean(trace_radiances(*s.b.freeze()));
@@ -50,8 +50,8 @@ TEST(Alpha, OfATextureCutsShapesOut) {
 TEST(Alpha, OfInstancesIsTheirOwn) {
   TexturedScene s;
   s.b.scene.meshes.push_back(cube_mesh());
-  s.b.add(mesh(0), s.b.diffuse(0));
-  s.b.add(masked(mesh(0), s.number(0.5f)), s.b.diffuse(0), moved(3, 0, 0));
+  s.b.add(mesh(0), s.b.diffuse(0.0));
+  s.b.add(masked(mesh(0), s.number(0.5f)), s.b.diffuse(0.0), moved(3, 0, 0));
   s.b.scene.settings.integrator = Integrator::path;
   s.b.scene.settings.samples_per_pixel = 64;
   s.b.light(LightKind::environment, s.b.constant(1), 1);
@@ -68,8 +68,8 @@ TEST(Alpha, LetsShadowRaysPassToo) {
   TexturedScene s;
   s.b.scene.settings.samples_per_pixel = 64;
   s.b.scene.settings.integrator = Integrator::path;
-  s.b.add(rectangle(4, 4), s.b.diffuse(1));
-  s.b.add(masked(rectangle(2, 2), s.number(0.3f)), s.b.diffuse(0), moved(0, 0, 1));
+  s.b.add(rectangle(4, 4), s.b.diffuse(1.0));
+  s.b.add(masked(rectangle(2, 2), s.number(0.3f)), s.b.diffuse(0.0), moved(0, 0, 1));
   s.b.light(LightKind::directional, s.b.constant(pi), 1);
   s.b.look_at({0, 3, 0.5}, {0, 0, 0}, orthographic(0.5f), {0, 0, 1});
   EXPECT_NEAR(mean(trace_radiances(*s.b.freeze())), 0.7, 0.08);
@@ -84,7 +84,7 @@ TEST(Alpha, OfZeroOnALampHidesItAndLeavesItsLight) {
     s.b.add(rectangle(4, 4), s.b.diffuse(0.5));
     Geometry lamp = rectangle(1, 1);
     lamp.flip_normal = 1;  // shines down
-    s.b.emit(s.b.add(masked(lamp, s.number(alpha)), s.b.diffuse(0), moved(0, 0, 1)), s.b.constant(1), 1);
+    s.b.emit(s.b.add(masked(lamp, s.number(alpha)), s.b.diffuse(0.0), moved(0, 0, 1)), s.b.constant(1), 1);
     if (look_up)
       s.b.look_at({0, 0, 0.5}, {0, 0, 1}, orthographic(0.1f));
     else

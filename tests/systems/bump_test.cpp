@@ -33,7 +33,7 @@ Texture height(Texture image) {
 
 TEST(Bump, AFlatDisplacementChangesNothing) {
   TexturedScene s;
-  Material material = s.b.diffuse(1);
+  Material material = s.b.diffuse(1.0);
   material.displacement = s.number(0.7f);
   EXPECT_NEAR(cosine_on_square(s, material, 0.4, 0.6), light_direction.z, 1e-5);
 }
@@ -43,7 +43,7 @@ TEST(Bump, AFlatDisplacementChangesNothing) {
 TEST(Bump, ASlopeOfTheDisplacementTurnsTheNormal) {
   const auto cosine = [](const std::vector<float>& heights, uint32_t width, uint32_t rows, float u_scale) {
     TexturedScene s;
-    Material material = s.b.diffuse(1);
+    Material material = s.b.diffuse(1.0);
     Texture texture = height(s.greys(width, rows, heights));
     texture.mapping.u_scale = u_scale;
     material.displacement = s.add(texture);
@@ -59,7 +59,7 @@ TEST(Bump, ASlopeOfTheDisplacementTurnsTheNormal) {
 
 TEST(Bump, PatternsHaveSlopesToo) {
   TexturedScene s;
-  Material material = s.b.diffuse(1);
+  Material material = s.b.diffuse(1.0);
   Texture coordinate;
   coordinate.kind = TextureKind::coordinate;
   coordinate.is_number = 1;
@@ -72,7 +72,7 @@ TEST(Bump, PatternsHaveSlopesToo) {
 TEST(Bump, NumericalAndExactSlopesOfOneImageAgree) {
   const auto cosine = [](TextureMapping::Kind kind) {
     TexturedScene s;
-    Material material = s.b.diffuse(1);
+    Material material = s.b.diffuse(1.0);
     Texture texture = height(s.greys(4, 4, {0, .1f, .3f, .2f, .1f, .2f, .2f, .1f, 0, .1f, .4f, .1f, .2f, .2f, .1f, 0}));
     texture.mapping.kind = kind;
     if (kind == TextureMapping::Kind::planar) {
@@ -90,7 +90,7 @@ TEST(Bump, NumericalAndExactSlopesOfOneImageAgree) {
 TEST(Bump, ANormalMapIsReadInTheTangentFrame) {
   const glm::dvec3 bent = glm::normalize(glm::dvec3(0.3, -0.2, 0.9));
   TexturedScene s;
-  Material material = s.b.diffuse(1);
+  Material material = s.b.diffuse(1.0);
   const glm::dvec3 code = 0.5 * bent + 0.5;
   s.image(1, 1, {float(code.x), float(code.y), float(code.z)});
   material.normal_map = 0;
@@ -111,7 +111,7 @@ TEST(Bump, InstancesTurnTheirBumps) {
     }
     for (const uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) square.indices.push_back(i);
     s.b.scene.meshes.push_back(square);
-    Material material = s.b.diffuse(1);
+    Material material = s.b.diffuse(1.0);
     const glm::dvec3 code = 0.5 * bent + 0.5;
     s.image(1, 1, {float(code.x), float(code.y), float(code.z)});
     material.normal_map = 0;
@@ -130,7 +130,7 @@ TEST(Bump, OnASphereTheDisplacedPlaceCounts) {
   for (const float base : {0.0f, 0.5f}) {
     TexturedScene s;
     s.b.scene.settings.shadows = false;
-    Material material = s.b.diffuse(1);
+    Material material = s.b.diffuse(1.0);
     Texture coordinate;  // v / 4 + base
     coordinate.kind = TextureKind::coordinate;
     coordinate.is_number = 1;
