@@ -37,7 +37,7 @@ std::string file_stem(const std::string& called, std::string_view fallback) {
 }
 
 bool same_pixels(const Image& a, const Image& b) {
-  return a.width == b.width && a.height == b.height && a.rgb == b.rgb;
+  return a.width == b.width && a.height == b.height && a.rgb == b.rgb && a.alpha == b.alpha;
 }
 
 // Whether the file that the image is called after still holds its pixels if it is decoded so.
@@ -120,7 +120,8 @@ const ImageFile& WriteContext::image_file(ImageId id) {
   for (const ImageFile& known : images)
     if (known.id == id) return known;
   const Image& image = scene.images[id];
-  const bool is_srgb = is_file(image, {}), is_linear = !is_srgb && is_file(image, {.gamma = 1});
+  const bool is_srgb = is_file(image, {.allows_negative = true});
+  const bool is_linear = !is_srgb && is_file(image, {.gamma = 1, .allows_negative = true});
   const bool is_copy = is_srgb || is_linear;
   const std::string ending = is_copy ? file_extension(image.name) : "exr";
   const std::string name = file_names.take(file_stem(image.name, "image")) + "." + ending;
