@@ -97,10 +97,6 @@ class TextureWriter {
         operand("b", texture_.b);
         mapping();
         break;
-      case TextureKind::square_root:
-        type("square_root");
-        operand("a", texture_.a);
-        return object_;
       case TextureKind::coordinate: {
         constexpr std::string_view axes[] = {"u", "v", "w"};
         type("coordinate");
