@@ -105,7 +105,7 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
     surface.tangent = if_then_else(hn::Eq(uv_area, zero), make_frame(shading).s, along_u);
     if (world.has_bumps) {
       if (world.has_instances)
-        for (Vec3& normal : n) normal = if_then_else(placed, transform_normal(inverse, normal), normal);
+        for (Vec3& normal : n) normal = if_then_else(placed, transform_normal(place.inverse, normal), normal);
       surface.slopes = triangle_slopes({du1, dv1, du2, dv2}, e1, e2, n, smooth, shading);
     }
   }
