@@ -51,6 +51,8 @@ struct WriteContext {
   std::map<MeshId, std::string> mesh_names;  // those that were asked for
   JsonText texture_definitions = JsonText::object().break_lines();
   std::map<TextureId, std::string> texture_names;
+  JsonText curve_definitions = JsonText::object().break_lines();
+  std::map<CurvesId, std::string> curve_names;
   std::vector<MeshFile> meshes;
   std::vector<ImageFile> images;
   std::vector<std::string> mistakes;  // what the format cannot say
@@ -58,6 +60,8 @@ struct WriteContext {
   // The name of a mesh in "meshes", the file of an image: both become side files.
   std::string mesh_name(MeshId id);
   const ImageFile& image_file(ImageId id);
+  // The name of curves in "curves".
+  std::string curves_name(CurvesId id);
   // What stands where the texture is used: {"texture": name}. It goes to the file's "textures".
   JsonText texture(TextureId id);
 };
