@@ -181,6 +181,7 @@ MaterialRow add_material(const Material& material, World& world) {
     case MaterialKind::rough: return add_rough(material, world);
     case MaterialKind::coated: return add_coated(material, world);
     case MaterialKind::smooth: return add_smooth(material, world);
+    case MaterialKind::interface: return {ShadeKind::interface, 0};
     case MaterialKind::dielectric: break;
   }
   return add_dielectric(material, world);

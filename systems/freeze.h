@@ -26,10 +26,17 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
 
 // Textures as programs, program i for texture i; images as texels. Errors: expressions that need too deep a stack.
 void build_textures(const Scene& scene, World& world, Diagnostics& diagnostics);
+// Rows of World::volumes on both sides of an entity's surface.
+struct VolumeSides {
+  uint32_t inside = keeps_volume, outside = keeps_volume;
+};
+// The media that fill space, their places by entity index, and what the camera is in. Errors: negative or infinite
+// coefficients, g not between -1 and 1, a slot that names an entity without Medium.
+std::vector<VolumeSides> build_volumes(const Scene& scene, World& world, Diagnostics& diagnostics);
 
 // Objects, vertices, quadrics, and the light rows of emitting shapes.
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
-                    World& world, Diagnostics& diagnostics);
+                    std::span<const VolumeSides> volumes, World& world, Diagnostics& diagnostics);
 
 // The environment's image (null: none) as columns of spectra, or of the mode's coefficients, and a density, and its
 // rotation.

@@ -5,13 +5,13 @@
 namespace metamer {
 
 void sort_hits(const World& world, uint32_t size, const HitStream& hits, uint32_t* order, Groups& groups) {
-  constexpr uint32_t miss = static_cast<uint32_t>(ShadeKind::miss);
+  constexpr uint32_t miss = static_cast<uint32_t>(ShadeKind::miss), phase = static_cast<uint32_t>(ShadeKind::phase);
   const uint32_t* kind_of_object = world.objects.shade_kind.data();
   uint8_t kinds[batch_capacity];
   uint32_t counts[shade_kind_count] = {};
   for (uint32_t i = 0; i < size; ++i) {
     const uint32_t object = hits.object[i];
-    const uint32_t kind = object == no_index ? miss : kind_of_object[object];
+    const uint32_t kind = object < scattered ? kind_of_object[object] : object == scattered ? phase : miss;
     kinds[i] = static_cast<uint8_t>(kind);
     ++counts[kind];
   }

@@ -19,6 +19,7 @@ struct ObjectColumns {
   Column<uint32_t> first_light;  // light row of the first triangle, or no_index
   Column<uint32_t> placement;    // row in World::placements; 0 is the identity: vertices are in world space
   Column<uint32_t> visibility;   // mask of rays that see it
+  Column<uint32_t> volume_inside, volume_outside;  // rows of World::volumes; keeps_volume in both: as before
   size_t size() const { return kind.size(); }
 };
 
@@ -75,6 +76,17 @@ struct MediumColumns {
 };
 // A path's media, highest priority first: four rows of 16 bits, the first in the low half of [0].
 inline constexpr uint32_t media_stack_size = 4, largest_medium = 0xffff;
+
+// What fills space between surfaces (component Medium), beside the optics of solids in MediumColumns. Row 0 is empty.
+struct VolumeColumns {
+  Column<uint32_t> sigma_a, sigma_s;  // SpectrumId, per metre, times `scale`
+  Column<uint32_t> emission;          // SpectrumId, W m^-2 sr^-1 nm^-1, times `emission_scale`
+  Column<float> scale, emission_scale, g;
+  Column<uint32_t> scatters;  // 0: rays go straight through, whatever is absorbed on the way
+};
+inline constexpr uint32_t keeps_volume = 0xffffffffu;
+// Beside those of component Visibility: shadow rays that look for the interfaces on their way.
+inline constexpr uint32_t visible_to_crossings = 8;
 
 // A light that can be chosen: one triangle or quadric, a point, a direction or a disc of directions, or the
 // environment.
@@ -163,6 +175,8 @@ struct World {
   DielectricColumns dielectric;
   MediumColumns media;
   uint32_t camera_media[2] = {0, 0};  // the stack that paths start with
+  VolumeColumns volumes;
+  uint32_t camera_volume = 0;  // the row of volumes that paths start in
   Column<LightRow> lights;
   std::vector<uint32_t> distant_disks;  // the rows of lights of that shape: rays that leave the scene run into them
   Distribution1D light_choice;          // over the rows of lights that are sampled; empty where there is none
@@ -178,7 +192,10 @@ struct World {
   bool needs_tangents = false;  // an anisotropic material is present
   bool has_instances = false;   // some triangles are in their object's space
   bool has_quadrics = false;
-  bool has_interiors = false;  // some material is followed: paths carry their media
+  bool has_interiors = false;   // some material is followed: paths carry their media
+  bool has_volumes = false;     // volumes other than the empty one, or interfaces: paths carry what they are in
+  bool has_interfaces = false;  // surfaces of ShadeKind::interface
+  bool shares_paths = false;    // free paths differ between wavelengths: paths carry their shares (PathStream)
   bool has_textures() const { return !textures.programs.empty(); }
   uint64_t zero_area_triangles = 0;
   std::unique_ptr<Accelerator, void (*)(Accelerator*)> accelerator{nullptr, nullptr};

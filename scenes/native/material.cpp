@@ -129,6 +129,10 @@ std::optional<Material> read_material(SceneContext& context, const Json::Value& 
     read_rough(context, object, material);
     return material;
   }
+  if (object.type() == "interface") {
+    material.kind = MaterialKind::interface;
+    return material;
+  }
   if (object.type() == "mirror") return mirror(context.scene.spectra);
   material.fresnel = static_cast<FresnelModel>(object.choice("fresnel", fresnel_names, 0));
   if (object.type() == "coated") {

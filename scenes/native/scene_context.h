@@ -16,6 +16,7 @@ enum class Quantity : uint8_t {
   brdf,         // at least 0; keeps its end values
   eta,          // above 0; keeps its end values
   kappa,        // at least 0; keeps its end values
+  coefficient,  // at least 0; keeps its end values
   light,        // at least 0; zero outside
 };
 
@@ -44,6 +45,7 @@ struct SceneContext {
   std::map<std::string, MeshId> meshes;         // of the file's "meshes"
   std::map<std::string, MeshId> mesh_files;     // by resolved path: a file is read once
   std::map<std::string, NamedEntity> entities;  // materials too
+  std::map<std::string, Entity> media;
 
   float metres(double length) const { return static_cast<float>(length * metres_per_unit); }
   Source source_of(const Json::Value& value) const { return {file, reader.document().at(value).line}; }

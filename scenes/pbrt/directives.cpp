@@ -80,15 +80,12 @@ void use_named_material(Reader& reader, Tokenizer& tokens, std::string_view dire
   if (name) reader.state.material = named_material(reader, *name, source).entity;
 }
 
-void make_named_medium(Reader& reader, std::string_view, Parameters& parameters) {
-  parameters.ignore_the_rest();
-  reader.messages.warning_once("media", parameters.source(), "media are not supported yet; space is empty");
-}
-
 void medium_interface(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
-  if (!read_string(reader, tokens, directive, source)) return;
-  if (tokens.peek().kind == TokenKind::string) tokens.next();
-  reader.messages.warning_once("media", source, "media are not supported yet; space is empty");
+  const auto inside = read_string(reader, tokens, directive, source);
+  if (!inside) return;
+  const bool has_outside = tokens.peek().kind == TokenKind::string;
+  const auto outside = has_outside ? read_string(reader, tokens, directive, source) : inside;
+  if (outside) use_media(reader, *inside, *outside, source);
 }
 
 // Texture "name" "spectrum" "kind" parameters.
@@ -181,7 +178,7 @@ constexpr auto directives = std::to_array<Directive>({
     {"Integrator", Where::before_world, plain<read_integrator>},
     {"LightSource", Where::in_world, with_attributes<read_light, AttributeTarget::light>},
     {"MakeNamedMaterial", Where::in_world, with_attributes<make_named_material, AttributeTarget::material>},
-    {"MakeNamedMedium", Where::anywhere, plain<make_named_medium>},
+    {"MakeNamedMedium", Where::anywhere, with_attributes<make_named_medium, AttributeTarget::medium>},
     {"Material", Where::in_world, with_attributes<material, AttributeTarget::material>},
     {"MediumInterface", Where::anywhere, medium_interface},
     {"NamedMaterial", Where::in_world, use_named_material},

@@ -35,6 +35,7 @@ struct GraphicsState {
   bool reverse_orientation = false;
   ColorSpace color_space = ColorSpace::srgb;
   Entity material;
+  MediumSlot media;
   AreaLight area_light;
   ParameterPointers attributes[std::size(attribute_targets)];  // into Reader::attribute_values; no name twice
 };
@@ -53,11 +54,18 @@ struct NamedMaterial {
   bool defined = false;
 };
 
+struct NamedMedium {
+  Entity entity;
+  Source first_use;
+  bool defined = false;
+};
+
 // A shape as it was said, not yet an entity: ObjectInstance makes several of one.
 struct ShapeRecord {
   Geometry geometry;
   glm::dmat4 transform;
   Entity material;
+  MediumSlot media;
   Source source;
 };
 
@@ -79,6 +87,7 @@ struct Reader {
   bool in_world = false;
   std::map<std::string, glm::dmat4> coordinate_systems = {};
   std::map<std::string, NamedMaterial> materials = {};
+  std::map<std::string, NamedMedium> media = {};
   std::vector<Entity> interface_materials = {};
   // Nothing where a texture could not be made, which has been said.
   std::map<std::string, std::optional<TextureId>> spectrum_textures = {}, float_textures = {};
@@ -136,6 +145,14 @@ std::optional<TextureId> read_texture_parameter(Reader& reader, Parameters& para
 
 // materials.cpp
 Entity read_material(Reader& reader, std::string_view kind, Parameters& parameters, Entity entity);
+
+// media.cpp
+void make_named_medium(Reader& reader, std::string_view name, Parameters& parameters);
+// What is inside and outside of the shapes that follow, by name; "": vacuum.
+void use_media(Reader& reader, const std::string& inside, const std::string& outside, Source source);
+// Only a slot with two different media matters to rays.
+inline bool separates(const MediumSlot& media) { return media.inside != media.outside; }
+void report_unmade_media(Reader& reader);
 
 // lights.cpp
 void read_light(Reader& reader, std::string_view kind, Parameters& parameters);

@@ -23,6 +23,9 @@ SceneBuilder everything(Integrator integrator = Integrator::path) {
   b.emit(b.add(sphere(0.2f), b.diffuse(0.3), moved(0, 1, 0.5)), b.named("A"), 0.1f);
   b.emit(b.add(rectangle(0.5f, 0.5f), b.diffuse(0.3), moved(-1, 1, 0) * turned(90, 1, 0, 0)), b.named("D65"), 0.1f);
   b.emit(b.add(disk(0.3f), b.diffuse(0.3), moved(1, 1, 0)), b.named("D50"), 0.1f, true);
+  const Entity haze = b.medium(b.named("colorchecker.red"), b.named("colorchecker.green"), 0.4f);
+  b.separate(b.add(mesh(0), b.interface(), moved(0.2, 0.2, 0.8)), haze);
+  b.separate(b.add(sphere(0.2f), b.interface(), moved(0.2, 0.2, 0.8)), {}, haze);
   b.light(LightKind::point, b.named("E"), 0.05f, moved(0, 0.3, 2));
   b.light(LightKind::environment, b.named("D65"), 0.005f);
   Camera camera = perspective(45);
