@@ -89,8 +89,8 @@ Sampler "zsobol" "string randomization" "none"
 Integrator "bdpt" "integer maxdepth" 3
 Accelerator "bvh" "string splitmethod" "sah"
 Option "disablepixeljitter" true
-MakeNamedMedium "fog" "string type" "homogeneous"
-MediumInterface "fog" ""
+
+
 ColorSpace "rec2020"
 Film "rgb" "float cropwindow" [0 1 0 1] "string sensor" "canon_eos_5d" "string filename" "x.exr" "float diagonal" 20)");
   EXPECT_TRUE(read.ok);
@@ -106,7 +106,6 @@ Film "rgb" "float cropwindow" [0 1 0 1] "string sensor" "canon_eos_5d" "string f
           "scene:5: warning: Integrator \"bdpt\" is not supported yet; path tracing is used",
           "scene:6: note: Accelerator \"bvh\": Embree's is always used",
           "scene:7: warning: Option \"disablepixeljitter\" is not supported; it changes nothing",
-          "scene:8: warning: media are not supported yet; space is empty",
           "scene:11: warning: Film \"rgb\": 'sensor' is not supported yet; cie1931 is used",
           "scene:11: note: Film's 'filename' is not used: outputs are named after the scene, or by -o",
           "scene:11: warning: Film \"rgb\": 'cropwindow' is not supported yet; the whole picture is rendered",

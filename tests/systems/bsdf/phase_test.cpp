@@ -14,7 +14,7 @@
 namespace metamer::testing {
 namespace {
 
-constexpr float asymmetries[] = {0, 1e-7f, -1e-4f, 0.01f, 0.3f, -0.6f, 0.85f, -0.97f};
+constexpr float asymmetries[] = {0, 1e-7f, -1e-4f, 0.01f, 0.3f, -0.6f, 0.85f, -0.9f};
 
 // A case's alpha_x is g; the cosine is wi[2].
 std::vector<BsdfCase> random_phases(size_t count, float g) {
@@ -56,7 +56,7 @@ TEST(Phase, IsDrawnByItsDensity) {
       DirectionHistogram histogram;
       for (const BsdfResult& draw : run_sample_phase(cases)) histogram.add(draw.wi[0], draw.wi[1], draw.wi[2]);
       const auto pdf = [&](double, double, double z) { return reference::eval_phase(z, g); };
-      EXPECT_GT(histogram.test(pdf, 8).p_value, chi_square_level) << g;
+      EXPECT_GT(histogram.test(pdf, 24).p_value, chi_square_level) << g;
     });
   }
 }
@@ -65,12 +65,14 @@ TEST(Phase, IsDrawnByItsDensity) {
 TEST(Phase, ScattersAllLightWithAMeanCosineOfG) {
   for (const double g : {-0.9, -0.4, 0.0, 0.2, 0.8}) {
     const auto integral = [&](auto&& weight) {
-      return 2 * std::numbers::pi *
-             integrate_rectangle([&](double z, double) { return weight(z) * reference::eval_phase(z, g); }, -1, 1, 0, 1,
-                                 64);
+      double sum = 0;
+      for (int k = 0; k < 256; ++k)  // narrow lobes are steep
+        sum += integrate_rectangle([&](double z, double) { return weight(z) * reference::eval_phase(z, g); },
+                                   -1 + k / 128.0, -1 + (k + 1) / 128.0, 0, 2 * std::numbers::pi, 2);
+      return sum;
     };
-    EXPECT_NEAR(integral([](double) { return 1.0; }), 1, 1e-9);
-    EXPECT_NEAR(integral([](double z) { return z; }), g, 1e-9);
+    EXPECT_NEAR(integral([](double) { return 1.0; }), 1, 1e-6);
+    EXPECT_NEAR(integral([](double z) { return z; }), g, 1e-6);
   }
   EXPECT_NEAR(reference::eval_phase(0.3, 0), 1 / (4 * std::numbers::pi), 1e-15);
 }
