@@ -38,7 +38,7 @@ void trace(const World& world, uint32_t depth, Batch& batch) {
     intersect_camera(world, batch.paths, batch.hits, &embree_seconds);
   else
     intersect_bounce(world, batch.paths, batch.hits, &embree_seconds);
-  sort_hits(world, batch.paths.size, batch.hits, batch.order, batch.shade.groups);
+  sort_hits(world, 0, batch.paths, batch.hits, batch.order, batch.shade.groups);
   batch.shade.size = batch.shade.groups.back().padded_end();
   surface(world, batch.paths, batch.hits, batch.order, batch.shade);
   if (!world.lights.empty()) light_sample(world, depth, batch.shade);

@@ -46,7 +46,7 @@ uint32_t run_intersect_bounce(const World& world, uint32_t, Batch& batch) {
   return batch.paths.size;
 }
 uint32_t run_sort(const World& world, uint32_t, Batch& batch) {
-  sort_hits(world, batch.paths.size, batch.hits, batch.order, batch.shade.groups);
+  sort_hits(world, 0, batch.paths, batch.hits, batch.order, batch.shade.groups);
   return batch.paths.size;
 }
 uint32_t run_surface(const World& world, uint32_t, Batch& batch) {

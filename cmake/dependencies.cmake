@@ -1,6 +1,6 @@
 # The libraries metamer needs wherever it is used; also installed, for find_package(metamer).
 # Their Debian names are in cmake/debian-packages.txt.
-set(metamer_dependencies embree TBB hwy fmt glm OpenImageIO OpenEXR jsoncpp tinyobjloader)
+set(metamer_dependencies embree TBB hwy fmt glm OpenImageIO OpenEXR jsoncpp tinyobjloader ZLIB)
 
 # Debian's OpenImageIO names OpenCV's headers, which it does not install and we do not use.
 macro(metamer_mend_dependencies)

@@ -7,9 +7,10 @@ metamer_mend_dependencies()
 if(NOT embree_VERSION VERSION_GREATER_EQUAL 3.13)
   message(FATAL_ERROR "Embree 3.13 or later is needed; found ${embree_VERSION}")
 endif()
-# Debian's Little CMS and OpenColorIO come without a CMake package.
+# Debian's Little CMS, OpenColorIO and OpenSubdiv come without a CMake package.
 find_path(LCMS2_INCLUDE lcms2.h REQUIRED)
 find_path(OPENCOLORIO_INCLUDE OpenColorIO/OpenColorIO.h REQUIRED)
+find_path(OPENSUBDIV_INCLUDE opensubdiv/far/topologyRefiner.h REQUIRED)
 if(METAMER_BENCH)
   find_package(benchmark REQUIRED)
 endif()

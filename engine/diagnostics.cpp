@@ -43,12 +43,20 @@ void Diagnostics::error(const SourceLocation& at, std::string message) {
   ++error_count_;
 }
 
-void Diagnostics::warning(const SourceLocation& at, std::string message) {
-  entries_.push_back({Severity::warning, at.file, at.line, std::move(message)});
+void Diagnostics::warning(const SourceLocation& at, std::string message, Strict strict) {
+  entries_.push_back({Severity::warning, at.file, at.line, std::move(message), strict});
 }
 
-void Diagnostics::note(const SourceLocation& at, std::string message) {
-  entries_.push_back({Severity::note, at.file, at.line, std::move(message)});
+void Diagnostics::note(const SourceLocation& at, std::string message, Strict strict) {
+  entries_.push_back({Severity::note, at.file, at.line, std::move(message), strict});
+}
+
+void Diagnostics::apply_strict() {
+  for (Diagnostic& d : entries_) {
+    if (d.severity == Severity::error || d.strict == Strict::allows) continue;
+    d.severity = Severity::error;
+    ++error_count_;
+  }
 }
 
 std::string format_diagnostics(const Diagnostics& diagnostics) {

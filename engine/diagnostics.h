@@ -11,11 +11,15 @@ namespace metamer {
 
 enum class Severity : uint8_t { note, warning, error };
 
+// What `--strict` makes of a remark: an error, unless the picture is the same without what the remark is about.
+enum class Strict : uint8_t { refuses, allows };
+
 struct Diagnostic {
   Severity severity = Severity::error;
   std::string file;
   uint32_t line = 0;  // 1-based; 0: the whole file
   std::string message;
+  Strict strict = Strict::refuses;
 };
 
 // Where in a text file a thing was said.
@@ -27,8 +31,10 @@ struct SourceLocation {
 class Diagnostics {
  public:
   void error(const SourceLocation& at, std::string message);
-  void warning(const SourceLocation& at, std::string message);
-  void note(const SourceLocation& at, std::string message);
+  void warning(const SourceLocation& at, std::string message, Strict strict = Strict::refuses);
+  void note(const SourceLocation& at, std::string message, Strict strict = Strict::refuses);
+  // Turns every remark that strict refuses into an error.
+  void apply_strict();
   bool has_errors() const { return error_count_ > 0; }
   size_t error_count() const { return error_count_; }
   std::span<const Diagnostic> all() const { return entries_; }

@@ -21,14 +21,16 @@ void take_paths(BatchArena& arena, size_t rows, PathStream& s) {
 }
 
 void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
-  for (auto* columns :
-       {&s.wo, &s.position, &s.normal, &s.shading_normal, &s.tangent, &s.light_direction, &s.next_direction})
+  for (auto* columns : {&s.wo, &s.position, &s.normal, &s.shading_normal, &s.tangent, &s.dp_du, &s.dp_dv, &s.dn_du,
+                        &s.dn_dv, &s.light_direction, &s.next_direction})
     take_all(arena, rows, *columns);
-  for (auto* columns : {&s.lambda_nm, &s.throughput, &s.reflectance, &s.light_radiance, &s.next_weight})
+  for (auto* columns :
+       {&s.lambda_nm, &s.throughput, &s.reflectance, &s.transmittance, &s.light_radiance, &s.next_weight})
     take_all(arena, rows, *columns);
   take_all(arena, rows, s.uv);
+  take_all(arena, rows, s.alpha);
   for (float** column : {&s.distance, &s.offset, &s.pdf_direction, &s.eta_scale, &s.light_distance, &s.light_pdf,
-                         &s.next_pdf, &s.next_eta_scale})
+                         &s.next_pdf, &s.next_eta_scale, &s.time})
     *column = arena.take<float>(rows);
   for (uint32_t** column : {&s.material, &s.light, &s.pixel_seed, &s.index, &s.slot})
     *column = arena.take<uint32_t>(rows);
@@ -39,7 +41,7 @@ void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
 }
 
 constexpr size_t columns_in_all =
-    2 * 26 + 6 + (7 * 3 + 5 * 4 + 2 + 8 + 5 + 4 + 2 + 4) + (6 + 1 + 4 + 1 + 4 + 1) + (12 + 2) + 1;
+    2 * 27 + 7 + (11 * 3 + 6 * 4 + 4 + 9 + 5 + 4 + 2 + 4) + (6 + 1 + 4 + 2 + 4 + 1) + (12 + 2) + 1;
 constexpr size_t column_bytes = (sorted_capacity + column_lanes) * sizeof(float) + 2 * column_alignment;
 
 }  // namespace
@@ -49,7 +51,7 @@ Batch::Batch() : arena(columns_in_all * column_bytes) {
   const size_t rows = sorted_capacity + column_lanes;
   take_paths(arena, rows, paths);
   take_paths(arena, rows, next);
-  hits = {arena.take<uint32_t>(rows), arena.take<uint32_t>(rows), arena.take<float>(rows),
+  hits = {arena.take<uint32_t>(rows), arena.take<uint32_t>(rows), arena.take<float>(rows), arena.take<uint32_t>(rows),
           arena.take<float>(rows),    arena.take<float>(rows),    arena.take<float>(rows)};
   take_shade(arena, rows, shade);
   take_all(arena, rows, shadow.origin);
@@ -59,6 +61,7 @@ Batch::Batch() : arena(columns_in_all * column_bytes) {
   shadow.slot = arena.take<uint32_t>(rows);
   take_all(arena, rows, shadow.lambda_nm);
   shadow.volume = arena.take<uint32_t>(rows);
+  shadow.time = arena.take<float>(rows);
   take_all(arena, rows, slots.lambda_nm);
   take_all(arena, rows, slots.inv_pdf_nm);
   take_all(arena, rows, slots.radiance);

@@ -2,8 +2,8 @@
 // columns together stay within a core's L2 cache. Nothing here outlives a batch, except the slots, which live
 // until the batch is accumulated.
 //
-// Per path: PathStream 108 bytes, twice (this bounce's and the next one's rays); HitStream 24; ShadeStream 264;
-// ShadowStream 68; Slots 56. Columns that a scene has no use for are not touched.
+// Per path: PathStream 112 bytes, twice (this bounce's and the next one's rays); HitStream 28; ShadeStream 340;
+// ShadowStream 72; Slots 56. Columns that a scene has no use for are not touched.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -21,6 +21,7 @@ inline constexpr uint32_t scattered = 0xfffffffeu;  // HitStream::object: no sur
 // What a hit's lanes are sorted by: each kind has its own kernel over all its lanes. The last three end a path.
 enum class ShadeKind : uint32_t {
   diffuse,
+  diffuse_transmission,
   rough,
   smooth_coated,
   rough_coated,
@@ -34,13 +35,19 @@ enum class ShadeKind : uint32_t {
   interface,  // without optical effect; paths pass it before they are sorted
   miss
 };
-inline constexpr uint32_t shade_kind_count = 13;
+inline constexpr uint32_t shade_kind_count = 14;
+// Of objects of several materials: the kind is chosen at every hit, by `sort`.
+inline constexpr uint32_t mixed_kind = shade_kind_count;
 // Rough kinds are lit by light samples, smooth kinds only by what lies in the few directions they answer to. A smooth
 // coat does both: its body is rough, its surface mirrors.
-inline constexpr ShadeKind rough_kinds[] = {
-    ShadeKind::diffuse,      ShadeKind::rough,           ShadeKind::smooth_coated,
-    ShadeKind::rough_coated, ShadeKind::rough_conductor, ShadeKind::rough_dielectric,
-    ShadeKind::phase};
+inline constexpr ShadeKind rough_kinds[] = {ShadeKind::diffuse,
+                                            ShadeKind::diffuse_transmission,
+                                            ShadeKind::rough,
+                                            ShadeKind::smooth_coated,
+                                            ShadeKind::rough_coated,
+                                            ShadeKind::rough_conductor,
+                                            ShadeKind::rough_dielectric,
+                                            ShadeKind::phase};
 inline constexpr ShadeKind smooth_kinds[] = {ShadeKind::smooth_conductor, ShadeKind::dielectric,
                                              ShadeKind::thin_dielectric};
 
@@ -87,6 +94,7 @@ struct PathStream {
   float* eta_scale;              // (n of the first medium / n here)^2 so far: roulette must not see radiance scaling
   uint32_t *pixel_seed, *index;  // the path's key into the low-discrepancy points
   uint32_t* slot;                // its row in Slots
+  float* time;                   // 0 to 1 while the shutter is open; only where World::has_motion
   Columns<uint32_t, 2> media;    // what the ray starts inside of (see MediumColumns); only where World::has_interiors
   uint32_t* volume;              // row of World::volumes that the ray starts in; only where World::has_volumes
   // Only where World::shares_paths: how likely each wavelength, had it led, would have made the path go as it did, up
@@ -106,6 +114,7 @@ void for_each_column(PathStream& s, const Visit& visit) {
   visit(s.pixel_seed);
   visit(s.index);
   visit(s.slot);
+  visit(s.time);
   for (uint32_t*& column : s.media) visit(column);
   visit(s.volume);
   for (float*& column : s.share) visit(column);
@@ -119,6 +128,7 @@ struct HitStream {
   uint32_t* object;     // row of World::objects; no_index: the ray left the scene
   uint32_t* primitive;  // triangle within the object
   float* distance;      // metres; exact for quadrics, Embree's (to be computed again) for triangles
+  uint32_t* material;   // row in the table of the kind. Writer: sort
   float* passed;        // metres up to the last interface that the ray passed
   float* reach;         // metres that the ray goes at most
   float* depth_left;    // optical depth that the leading wavelength still goes before it is scattered
@@ -130,10 +140,12 @@ struct ShadeStream {
   Groups groups;
   // Writer: surface.
   Columns<float, 3> wo;                       // unit, towards the viewer
-  Columns<float, 3> position;                 // metres
+  Columns<float, 3> position;                 // metres; of a ray that left a world with portals, where it came from
   Columns<float, 3> normal;                   // geometric, unit, on the side the shape calls its outside
   Columns<float, 3> shading_normal, tangent;  // unit; tangent only where the world asks for it
   Columns<float, 2> uv;                       // only where the world has textures
+  Columns<float, 3> dp_du, dp_dv;             // of the position, as shading sees it; only where the world has bumps
+  Columns<float, 3> dn_du, dn_dv;             // of the shading normal; the same
   float* distance;                            // metres from the previous vertex
   float* offset;                              // metres along the normal that a new ray must start away from the surface
   uint32_t* material;                         // row in the table of the kind
@@ -143,8 +155,11 @@ struct ShadeStream {
   uint32_t *pixel_seed, *index, *slot;
   Columns<uint32_t, 2> media;  // of the ray that came, where `carries_media`; corrected by `media`
   bool carries_media = false;
+  float* time;  // of the path, where `carries_time`
+  bool carries_time = false;
   // Writer: textures, in lanes whose material has one.
-  Columns<float, 4> reflectance;
+  Columns<float, 4> reflectance, transmittance;
+  Columns<float, 2> alpha;       // GGX widths along and across the tangent
   Columns<uint32_t, 2> volumes;  // on the inside and the outside of the surface, where `carries_volumes`
   bool carries_volumes = false;
   Columns<float, 4> share;  // where `carries_shares`; kernels of what light enters know when a wavelength is alone
@@ -173,6 +188,7 @@ struct ShadowStream {
   uint32_t* slot;
   Columns<float, 4> lambda_nm;  // this and the volume that the ray starts in: only where the shading carries volumes
   uint32_t* volume;
+  float* time;  // where World::has_motion
 };
 
 // What a path, or one node of a ray tree, gathers, by its place in the batch.

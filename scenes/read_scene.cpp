@@ -1,6 +1,6 @@
 #include "scenes/read_scene.h"
 
-#include "scenes/file_bytes.h"
+#include "scenes/gzip.h"
 #include "scenes/native/read_native.h"
 #include "scenes/pbrt/read_pbrt.h"
 
@@ -17,11 +17,11 @@ bool looks_like_json(std::string_view text) {
 }  // namespace
 
 bool read_scene(const std::string& path, Scene& scene, Diagnostics& diagnostics) {
-  const std::string extension = file_extension(path);
+  const std::string extension = packed_file_extension(path);
   if (extension == "json") return read_native(path, scene, diagnostics);
   if (extension == "pbrt") return read_pbrt(path, scene, diagnostics);
   FileBytes bytes;
-  if (!read_file(path, {path, 0}, bytes, diagnostics)) return false;
+  if (!read_packed_file(path, {path, 0}, bytes, diagnostics)) return false;
   if (looks_like_json(bytes.text())) return read_native(path, std::move(bytes), scene, diagnostics);
   diagnostics.error({path, 0}, "unknown kind of scene; expected a file ending in .json or .pbrt");
   return false;

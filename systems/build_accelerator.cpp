@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <glm/matrix.hpp>
 #include <limits>
 #include <stdexcept>
 #include <unordered_map>
@@ -25,10 +26,28 @@ struct ObjectRay {
   double origin[3], direction[3];
 };
 
-ObjectRay to_object(const Placement& placement, const float (&origin)[3], const float (&direction)[3]) {
+// The matrix of a moving object at a time within [0, 1], inverted. The keys are those of placement-inl.h.
+void moving_to_object(const World& world, uint32_t object, float time, double (&to_object)[12]) {
+  const uint32_t segments = world.objects.key_count[object] - 1;
+  const double scaled = double{time} * segments;
+  const uint32_t segment = std::min(static_cast<uint32_t>(scaled), segments - 1);
+  const MotionKey* key = &world.motion_keys[world.objects.first_key[object] + segment];
+  glm::dmat4 m(1.0);
+  const double t = scaled - segment;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column)
+      m[column][row] =
+          (1 - t) * double{key[0].to_world[4 * row + column]} + t * double{key[1].to_world[4 * row + column]};
+  const glm::dmat4 inverse = glm::inverse(m);
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column) to_object[4 * row + column] = inverse[column][row];
+}
+
+template <class Number>
+ObjectRay to_object_space(const Number (&to_object)[12], const float (&origin)[3], const float (&direction)[3]) {
   ObjectRay ray;
   for (int i = 0; i < 3; ++i) {
-    const float* row = placement.to_object + 4 * i;
+    const Number* row = to_object + 4 * i;
     ray.origin[i] = double{row[0]} * origin[0] + double{row[1]} * origin[1] + double{row[2]} * origin[2] + row[3];
     ray.direction[i] = double{row[0]} * direction[0] + double{row[1]} * direction[1] + double{row[2]} * direction[2];
   }
@@ -63,24 +82,43 @@ void disk_distances(const Placement& placement, const ObjectRay& ray, double (&t
     t[0] = distance;
 }
 
-// The nearest hit in (near, far), or infinity.
-float quadric_distance(const World& world, uint32_t object, const ObjectRay& ray, float near, float far) {
+// The nearest hit in (near, far) that is there, or infinity.
+template <class IsThere>
+float quadric_distance(const World& world, uint32_t object, const ObjectRay& ray, float near, float far,
+                       const IsThere& counts) {
   const Placement& placement = world.placements[world.objects.placement[object]];
   double t[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   if (world.objects.kind[object] == static_cast<uint32_t>(ShapeKind::sphere))
     sphere_distances(placement, ray, t);
   else
     disk_distances(placement, ray, t);
-  for (const double distance : t)
-    if (distance > near && distance < far) return static_cast<float>(distance);
+  for (uint32_t nth = 0; nth < 2; ++nth) {
+    const auto distance = static_cast<float>(t[nth]);
+    if (t[nth] > near && t[nth] < far && counts(distance, nth)) return distance;
+  }
   return std::numeric_limits<float>::infinity();
 }
 
-float lane_distance(const World& world, uint32_t object, RTCRayN* rays, unsigned n, unsigned lane) {
+float lane_distance(const World& world, uint32_t object, const RTCIntersectContext* context, RTCRayN* rays, unsigned n,
+                    unsigned lane) {
   const float origin[3] = {RTCRayN_org_x(rays, n, lane), RTCRayN_org_y(rays, n, lane), RTCRayN_org_z(rays, n, lane)};
   const float direction[3] = {RTCRayN_dir_x(rays, n, lane), RTCRayN_dir_y(rays, n, lane), RTCRayN_dir_z(rays, n, lane)};
-  const ObjectRay ray = to_object(world.placements[world.objects.placement[object]], origin, direction);
-  return quadric_distance(world, object, ray, RTCRayN_tnear(rays, n, lane), RTCRayN_tfar(rays, n, lane));
+  ObjectRay ray;
+  if (world.objects.key_count[object] == 0) {
+    ray = to_object_space(world.placements[world.objects.placement[object]].to_object, origin, direction);
+  } else {
+    double to_object[12];
+    moving_to_object(world, object, RTCRayN_time(rays, n, lane), to_object);
+    ray = to_object_space(to_object, origin, direction);
+  }
+  const auto counts = [&](float distance, uint32_t nth) {
+    if (!world.has_masks) return true;
+    RayHit hit;
+    hit.object = object;
+    hit.distance = distance;
+    return is_there(world, *reinterpret_cast<const RayContext*>(context), RTCRayN_id(rays, n, lane), hit, nth);
+  };
+  return quadric_distance(world, object, ray, RTCRayN_tnear(rays, n, lane), RTCRayN_tfar(rays, n, lane), counts);
 }
 
 void intersect_quadric(const RTCIntersectFunctionNArguments* args) {
@@ -89,7 +127,7 @@ void intersect_quadric(const RTCIntersectFunctionNArguments* args) {
   RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
   for (unsigned lane = 0; lane < args->N; ++lane) {
     if (args->valid[lane] == 0) continue;
-    const float distance = lane_distance(world, args->geomID, rays, args->N, lane);
+    const float distance = lane_distance(world, args->geomID, args->context, rays, args->N, lane);
     if (std::isinf(distance)) continue;
     RTCRayN_tfar(rays, args->N, lane) = distance;
     RTCHitN_geomID(hits, args->N, lane) = args->geomID;
@@ -102,7 +140,7 @@ void occluded_quadric(const RTCOccludedFunctionNArguments* args) {
   const World& world = *static_cast<const Accelerator::Quadric*>(args->geometryUserPtr)->world;
   for (unsigned lane = 0; lane < args->N; ++lane) {
     if (args->valid[lane] == 0) continue;
-    if (!std::isinf(lane_distance(world, args->geomID, args->ray, args->N, lane)))
+    if (!std::isinf(lane_distance(world, args->geomID, args->context, args->ray, args->N, lane)))
       RTCRayN_tfar(args->ray, args->N, lane) = -std::numeric_limits<float>::infinity();
   }
 }
@@ -113,9 +151,13 @@ void quadric_bounds(const RTCBoundsFunctionArguments* args) {
   const World& world = *world_pointer;
   const Placement& placement = world.placements[world.objects.placement[object]];
   const bool is_sphere = world.objects.kind[object] == static_cast<uint32_t>(ShapeKind::sphere);
+  // Of a moving one at the time of a key: a box of matrices in between lies within the boxes' interpolation.
+  const bool moves = world.objects.key_count[object] > 0;
+  const float* to_world =
+      moves ? world.motion_keys[world.objects.first_key[object] + args->timeStep].to_world : placement.to_world;
   float lower[3], upper[3];
   for (int i = 0; i < 3; ++i) {
-    const float* row = placement.to_world + 4 * i;
+    const float* row = to_world + 4 * i;
     const double z = is_sphere ? double{row[2]} * row[2] : 0.0;
     const double extent = double{placement.radius} * std::sqrt(double{row[0]} * row[0] + double{row[1]} * row[1] + z);
     const double centre = row[3] + (is_sphere ? 0.0 : double{row[2]} * placement.height);
@@ -139,6 +181,10 @@ RTCGeometry triangle_geometry(const World& world, RTCDevice device, uint32_t obj
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, world.triangle_vertices.data(),
                              size_t{3} * sizeof(uint32_t) * world.objects.first_triangle[object], 3 * sizeof(uint32_t),
                              world.objects.triangle_count[object]);
+  if (!world.has_masks) return geometry;
+  rtcSetGeometryUserData(geometry, const_cast<World*>(&world));
+  rtcSetGeometryIntersectFilterFunction(geometry, filter_masked);
+  rtcSetGeometryOccludedFilterFunction(geometry, filter_masked);
   return geometry;
 }
 
@@ -152,6 +198,16 @@ RTCGeometry quadric_geometry(Accelerator& accelerator, const World& world, uint3
   rtcSetGeometryIntersectFunction(geometry, intersect_quadric);
   rtcSetGeometryOccludedFunction(geometry, occluded_quadric);
   return geometry;
+}
+
+// Embree takes the same keys, evenly spaced in time, and interpolates their matrices linearly as well.
+void set_motion(const World& world, uint32_t object, bool is_instance, RTCGeometry geometry) {
+  const uint32_t count = world.objects.key_count[object];
+  if (count == 0) return;
+  rtcSetGeometryTimeStepCount(geometry, count);
+  for (uint32_t step = 0; is_instance && step < count; ++step)
+    rtcSetGeometryTransform(geometry, step, RTC_FORMAT_FLOAT3X4_ROW_MAJOR,
+                            world.motion_keys[world.objects.first_key[object] + step].to_world);
 }
 
 // Spatial splits make the best trees.
@@ -203,6 +259,7 @@ void build_accelerator(World& world) {
       rtcSetGeometryInstancedScene(geometry, mesh);
       rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, world.placements[placement].to_world);
     }
+    set_motion(world, object, is_mesh, geometry);
     rtcSetGeometryMask(geometry, world.objects.visibility[object]);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(accelerator->root, geometry, object);

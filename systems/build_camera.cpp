@@ -2,6 +2,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/simd/portable_math.h"
+#include "systems/build_motion.h"
 #include "systems/freeze.h"
 
 namespace metamer {
@@ -24,6 +25,47 @@ void store(float (&target)[3], const glm::dvec3& v) {
   for (int i = 0; i < 3; ++i) target[i] = static_cast<float>(v[i]);
 }
 
+// All that depends on where the camera is; the matrix takes it to the world.
+void place_camera(const Camera& camera, const RenderSettings& settings, const glm::dmat4& matrix, CameraRow& row) {
+  const Window window = screen_window(camera, settings);
+  const glm::dvec3 x(matrix[0]), y(matrix[1]), z(matrix[2]), origin(matrix[3]);
+  if (camera.kind == CameraKind::spherical) {
+    store(row.origin, origin);
+    store(row.right, x);
+    store(row.down, z);
+    store(row.axis, y);
+    return;
+  }
+  const bool perspective = camera.kind == CameraKind::perspective;
+  const double half_degree = 3.14159265358979323846 / 360;
+  const double half_side =
+      perspective ? portable::tan(double{camera.fov_deg} * half_degree) : double{camera.screen_height} / 2;
+  const double x_step = (window.x_max - window.x_min) * half_side / settings.width;
+  const double y_step = (window.y_max - window.y_min) * half_side / settings.height;
+  const glm::dvec3 corner = x * (window.x_min * half_side) + y * (window.y_max * half_side);
+  store(row.origin, perspective ? origin : origin + corner);
+  store(row.axis, perspective ? corner + z : glm::normalize(z));
+  store(row.right, x * x_step);
+  store(row.down, -y * y_step);
+  store(row.lens_x, x * double{camera.lens_radius});
+  store(row.lens_y, y * double{camera.lens_radius});
+  // The plane of focus is at camera depth focal_distance: z / |z|^2 measures depth in camera units.
+  store(row.forward, z / glm::dot(z, z));
+}
+
+CameraKey key_of(const CameraRow& row) {
+  CameraKey key;
+  const auto copy = [](const float(&from)[3], float(&to)[3]) { std::copy(from, from + 3, to); };
+  copy(row.origin, key.origin);
+  copy(row.axis, key.axis);
+  copy(row.right, key.right);
+  copy(row.down, key.down);
+  copy(row.lens_x, key.lens_x);
+  copy(row.lens_y, key.lens_y);
+  copy(row.forward, key.forward);
+  return key;
+}
+
 }  // namespace
 
 void build_camera(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics) {
@@ -35,28 +77,19 @@ void build_camera(const Scene& scene, std::span<const glm::dmat4> to_world, Worl
   if (table.size() > 1)
     diagnostics.warning(scene.location(table.owner(1)), "more than one camera: the first one is used");
   const Camera camera = table.get(0);
-  const glm::dmat4& matrix = to_world[table.owner(0).index];
-  const Window window = screen_window(camera, world.settings);
-  const bool perspective = camera.kind == CameraKind::perspective;
-  const double half_degree = 3.14159265358979323846 / 360;
-  const double half_side =
-      perspective ? portable::tan(double{camera.fov_deg} * half_degree) : double{camera.screen_height} / 2;
-  const double x_step = (window.x_max - window.x_min) * half_side / world.settings.width;
-  const double y_step = (window.y_max - window.y_min) * half_side / world.settings.height;
-  const glm::dvec3 x(matrix[0]), y(matrix[1]), z(matrix[2]), origin(matrix[3]);
-  const glm::dvec3 corner = x * (window.x_min * half_side) + y * (window.y_max * half_side);
   CameraRow& row = world.camera;
   row.kind = camera.kind;
-  store(row.origin, perspective ? origin : origin + corner);
-  store(row.axis, perspective ? corner + z : glm::normalize(z));
-  store(row.right, x * x_step);
-  store(row.down, -y * y_step);
-  store(row.lens_x, x * double{camera.lens_radius});
-  store(row.lens_y, y * double{camera.lens_radius});
-  row.lens_radius = camera.lens_radius;
-  // The plane of focus is at camera depth focal_distance: z / |z|^2 measures depth in camera units.
-  store(row.forward, z / glm::dot(z, z));
+  row.lens_radius = camera.kind == CameraKind::spherical ? 0 : camera.lens_radius;
   row.focal_distance = camera.focal_distance;
+  row.mapping = camera.mapping;
+  row.x_step = 1.0f / static_cast<float>(world.settings.width);
+  row.y_step = 1.0f / static_cast<float>(world.settings.height);
+  const std::vector<glm::dmat4> keys = motion_keys(scene, table.owner(0), diagnostics);
+  for (const glm::dmat4& key : keys) {
+    place_camera(camera, world.settings, key, row);
+    world.camera_keys.push_back(key_of(row));
+  }
+  place_camera(camera, world.settings, keys.empty() ? to_world[table.owner(0).index] : keys.front(), row);
 }
 
 }  // namespace metamer

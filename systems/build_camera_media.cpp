@@ -47,6 +47,7 @@ void start_probes(const World& world, PathStream& paths) {
     paths.pdf_direction[i] = 0, paths.eta_scale[i] = 1;
     paths.pixel_seed[i] = paths.index[i] = 0, paths.slot[i] = i;
     paths.media[0][i] = paths.media[1][i] = paths.volume[i] = 0;
+    paths.time[i] = 0;
   }
 }
 
@@ -55,7 +56,7 @@ void advance(const World& world, Batch& batch, std::vector<Media>& entered, Medi
   double seconds = 0;
   intersect_bounce(world, batch.paths, batch.hits, &seconds);
   ShadeStream& shade = batch.shade;
-  sort_hits(world, batch.paths.size, batch.hits, batch.order, shade.groups);
+  sort_hits(world, 0, batch.paths, batch.hits, batch.order, shade.groups);
   shade.size = shade.groups.back().padded_end();
   surface(world, batch.paths, batch.hits, batch.order, shade);
   batch.next.size = 0;

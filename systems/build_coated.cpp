@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "systems/bsdf/coat_albedo.h"
@@ -9,18 +10,23 @@
 namespace metamer {
 namespace {
 
+// One table serves both of a rough surface's widths: what enters depends little on them.
+double table_alpha(const Material& material) {
+  return std::sqrt(double{std::max(material.alpha_x, least_alpha)} * double{std::max(material.alpha_y, least_alpha)});
+}
+
 // The table's rows are shared by coats that differ in what is under them only.
-CoatRows rows_of(const Material& material, float alpha, bool schlick, CoatedColumns& table,
-                 const SpectrumSet& spectra) {
-  for (size_t row = 0; row < table.eta.size(); ++row) {
-    const bool same =
-        table.eta[row] == material.eta && table.alpha[row] == alpha && (table.schlick[row] != 0) == schlick;
+CoatRows rows_of(const Material& material, const CoatSurface& surface, const CoatedColumns& coats,
+                 const SpectrumSet& spectra, Column<float>& table) {
+  for (size_t row = 0; row < coats.eta.size(); ++row) {
+    const bool same = coats.eta[row] == material.eta && coats.alpha_x[row] == material.alpha_x &&
+                      coats.alpha_y[row] == material.alpha_y && (coats.schlick[row] != 0) == surface.schlick &&
+                      (coats.hits[row] >= 0) == surface.layered && double{coats.thickness[row]} == surface.thickness;
     if (same)
-      return {table.first_row[row], table.row_stride[row], table.last_pair[row], table.eta_least[row],
-              table.rows_per_eta[row]};
+      return {coats.first_row[row], coats.row_stride[row], coats.last_pair[row], coats.eta_least[row],
+              coats.rows_per_eta[row]};
   }
-  return add_coat_rows(double{alpha}, schlick, spectra.min_value(material.eta), spectra.max_value(material.eta),
-                       table.albedos);
+  return add_coat_rows(surface, spectra.min_value(material.eta), spectra.max_value(material.eta), table);
 }
 
 }  // namespace
@@ -31,30 +37,45 @@ bool check_coated(const Scene& scene, Entity entity, const Material& material, D
     diagnostics.error(scene.location(entity), fmt::format("{}: {}", scene.describe(entity), what));
   };
   if (!(material.alpha_x >= 0 && std::isfinite(material.alpha_x))) error("'roughness' is not a number of at least 0");
-  if (material.alpha_x != material.alpha_y) error("a coat's roughness is the same in every direction");
+  if (material.kind == MaterialKind::coated && material.alpha_x != material.alpha_y)
+    error("a coat's roughness is the same in every direction");
   if (!(scene.spectra.min_value(material.eta) > 0)) error("'eta' is not above 0 at every wavelength");
   // Single precision may round a 1 up.
   if (scene.spectra.has_negative(material.reflectance) || scene.spectra.max_value(material.reflectance) > 1 + 1e-6)
     error("'reflectance' is not from 0 to 1 at every wavelength");
+  const Layer& layer = material.layer;
+  if (!(layer.thickness >= 0 && std::isfinite(layer.thickness)))
+    error("'optical_thickness' is not a number of at least 0");
   return diagnostics.error_count() == errors_before;
 }
 
 MaterialRow add_coated(const Material& material, World& world) {
-  const bool smooth = material.alpha_x < smooth_alpha;
+  const bool smooth = std::max(material.alpha_x, material.alpha_y) < smooth_alpha;
+  const bool layered = material.kind == MaterialKind::layered;
   CoatedColumns& table = smooth ? world.smooth_coated : world.rough_coated;
-  const float alpha = smooth ? 0 : material.alpha_x;
-  const bool schlick = material.fresnel == FresnelModel::schlick;
-  const CoatRows rows = rows_of(material, alpha, schlick, table, world.spectra);
+  Material coat = material;
+  if (smooth) coat.alpha_x = coat.alpha_y = 0;
+  CoatSurface surface;
+  surface.alpha = smooth ? 0 : table_alpha(coat);
+  surface.schlick = material.fresnel == FresnelModel::schlick;
+  surface.layered = layered;
+  surface.thickness = layered ? double{material.layer.thickness} : 0;
+  const CoatRows rows = rows_of(coat, surface, table, world.spectra, table.albedos);
   table.reflectance.push_back(material.reflectance);
   table.texture.push_back(material.reflectance_texture);
   table.eta.push_back(material.eta);
-  table.alpha.push_back(alpha);
-  table.schlick.push_back(schlick);
+  table.alpha_x.push_back(coat.alpha_x);
+  table.alpha_y.push_back(coat.alpha_y);
+  table.thickness.push_back(static_cast<float>(surface.thickness));
+  // Half of the scatterings inside are at the base, the first of them is.
+  table.hits.push_back(layered ? static_cast<float>((material.layer.max_depth + 1) / 2) : -1.0f);
+  table.schlick.push_back(surface.schlick);
   table.first_row.push_back(rows.first);
   table.row_stride.push_back(rows.stride);
   table.last_pair.push_back(rows.last_pair);
   table.eta_least.push_back(rows.eta_least);
   table.rows_per_eta.push_back(rows.rows_per_eta);
+  if (coat.alpha_x != coat.alpha_y) world.needs_tangents = true;
   return {smooth ? ShadeKind::smooth_coated : ShadeKind::rough_coated, static_cast<uint32_t>(table.eta.size() - 1)};
 }
 

@@ -52,6 +52,8 @@ void build_coefficients(World& world) {
   RoleCoefficients albedo(world, albedo_coefficients), index(world, index_coefficients);
   RoleCoefficients light(world, light_coefficients), factor(world, factor_coefficients);
   albedo.give(world.diffuse.reflectance);
+  albedo.give(world.diffuse_transmission.reflectance);
+  albedo.give(world.diffuse_transmission.transmittance);
   give_rough(world);
   index.give(world.conductor.eta);
   index.give(world.conductor.kappa);

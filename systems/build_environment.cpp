@@ -4,9 +4,7 @@
 #include <glm/matrix.hpp>
 
 #include "engine/simd/portable_math.h"
-#include "engine/spectrum/color_mode.h"
 #include "systems/freeze.h"
-#include "systems/image_texels.h"
 
 namespace metamer {
 namespace {
@@ -30,7 +28,7 @@ double ring_weight(const Image& image, uint32_t y) {
 
 }  // namespace
 
-void build_environment(const Image* image, const glm::dmat4& to_world, ColorMode color, Environment& environment) {
+void build_environment(const Image* image, const glm::dmat4& to_world, Environment& environment) {
   const glm::dmat3 rotation = orthonormal(glm::dmat3(to_world)), inverse = glm::transpose(rotation);
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column) {
@@ -38,22 +36,14 @@ void build_environment(const Image* image, const glm::dmat4& to_world, ColorMode
       environment.to_local[3 * row + column] = static_cast<float>(inverse[column][row]);
     }
   if (image == nullptr) return;
-  environment.width = image->width;
-  environment.height = image->height;
   environment.mapping = image->mapping;
-  const size_t count = size_t{image->width} * image->height;
-  environment.has_coefficients = color != ColorMode::spectral;
-  environment.texels = image_texels(*image, RgbKind::unbounded, color);
-  std::vector<double> weights(count);
+  std::vector<double> weights(size_t{image->width} * image->height);
   const Color3 luminance = rgb_to_xyz(image->color_space)[1];
-  double sum = 0;
-  for (size_t texel = 0; texel < count; ++texel) {
+  for (size_t texel = 0; texel < weights.size(); ++texel) {
     const float* rgb = image->rgb.data() + 3 * texel;
     const double level = luminance[0] * rgb[0] + luminance[1] * rgb[1] + luminance[2] * rgb[2];
     weights[texel] = std::max(level, 0.0) * ring_weight(*image, static_cast<uint32_t>(texel / image->width));
-    sum += weights[texel];
   }
-  environment.mean_luminance = sum / static_cast<double>(count);
   environment.density = make_distribution_2d(weights, image->width, image->height);
 }
 

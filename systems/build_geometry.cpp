@@ -6,7 +6,10 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <optional>
 
+#include "systems/build_light_images.h"
+#include "systems/build_motion.h"
 #include "systems/freeze.h"
 #include "systems/light_rows.h"
 
@@ -64,6 +67,39 @@ bool is_within_reach(const glm::dmat4& to_world, double extent) {
 }
 
 constexpr float no_uv = std::numeric_limits<float>::quiet_NaN();
+// Where the object that is being added is as the shutter opens, and the keys of its motion, if it moves.
+struct Place {
+  glm::dmat4 to_world;
+  std::vector<glm::dmat4> keys;
+  bool moves() const { return !keys.empty(); }
+};
+
+// What emits light stands still: as the lights have been placed.
+Place place_of(Builder& b, Entity entity, const glm::dmat4& to_world) {
+  Place place{to_world, motion_keys(b.scene, entity, b.diagnostics)};
+  if (!place.moves()) return place;
+  if (b.scene.registry.has<Light>(entity)) {
+    b.diagnostics.warning(b.scene.location(entity),
+                          fmt::format("{} emits light and does not move: lights stand as at the start of their motion",
+                                      b.scene.describe(entity)));
+    return {to_world, {}};
+  }
+  place.to_world = place.keys.front();
+  return place;
+}
+
+void add_motion(World& world, const Place& place) {
+  world.objects.first_key.push_back(static_cast<uint32_t>(world.motion_keys.size()));
+  world.objects.key_count.push_back(static_cast<uint32_t>(place.keys.size()));
+  if (place.moves()) world.has_motion = true;
+  for (const glm::dmat4& matrix : place.keys) {
+    MotionKey key;
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 4; ++column)
+        key.to_world[row * 4 + column] = static_cast<float>(matrix[column][row]);
+    world.motion_keys.push_back(key);
+  }
+}
 
 void push_vector(Column<float>& column, const glm::dvec3& v) {
   for (int i = 0; i < 3; ++i) column.push_back(static_cast<float>(v[i]));
@@ -126,27 +162,40 @@ Mesh rectangle_mesh(const Geometry& geometry) {
   return mesh;
 }
 
-// The lights of the last object, those from its first_light on, if they state their power.
-void spread_power_of(Builder& b, Entity entity) {
-  const Light light = b.scene.registry.get<Light>(entity);
+// What the lights of the last object, those from its first_light on, have together: their image, and the power that
+// they state.
+void finish_lights(Builder& b, Entity entity) {
+  Light light = b.scene.registry.get<Light>(entity);
+  World& world = b.world;
+  const size_t first = world.objects.first_light.back();
+  if (light.image != no_index) {
+    const std::optional<uint32_t> image = add_light_image(b.scene, light, world);
+    if (!image) b.diagnostics.error(b.scene.location(entity), too_many_light_texels);
+    while (world.image_of_light.size() < first) world.image_of_light.push_back(no_index);
+    while (world.image_of_light.size() < world.lights.size()) world.image_of_light.push_back(image.value_or(no_index));
+    world.has_shape_images = true;
+    const double weight = image ? double{world.light_images.rows[*image].weight} : 1;
+    if (light.is_power != 0 && weight > 0) light.scale = static_cast<float>(light.scale / weight);
+  }
   if (light.is_power == 0) return;
-  const size_t first = b.world.objects.first_light.back();
   if (!spread_power(light, {b.world.lights.data() + first, b.world.lights.size() - first})) {
     b.diagnostics.error(b.scene.location(entity),
                         fmt::format("the area light {} has no area to emit its power from", b.scene.describe(entity)));
   }
 }
 
-void add_mesh_object(Builder& b, Entity entity, const Geometry& geometry, const Mesh& mesh,
-                     const glm::dmat4& to_world) {
+void add_mesh_object(Builder& b, Entity entity, const Geometry& geometry, const Mesh& mesh, const Place& place) {
+  const glm::dmat4& to_world = place.to_world;
   ObjectColumns& objects = b.world.objects;
   const bool emits = b.scene.registry.has<Light>(entity);
-  const bool shared =
-      geometry.kind == ShapeKind::mesh && b.mesh_users[geometry.mesh] > 1 && !emits && geometry.flip_normal == 0;
+  // Of a mesh used more than once, and of one that moves, the vertices stay in its own space.
+  const bool can_share = geometry.kind == ShapeKind::mesh && !emits && geometry.flip_normal == 0;
+  const bool shared = can_share && (b.mesh_users[geometry.mesh] > 1 || place.moves());
   uint32_t first = 0, placement = 0;
-  if (shared) {
-    uint32_t& known = b.shared_first[geometry.mesh];
-    if (known == no_index) known = add_triangles(b, mesh, glm::dmat4(1), false);
+  if (shared || place.moves()) {
+    uint32_t own = no_index;
+    uint32_t& known = shared ? b.shared_first[geometry.mesh] : own;
+    if (known == no_index) known = add_triangles(b, mesh, glm::dmat4(1), geometry.flip_normal != 0);
     first = known;
     placement = static_cast<uint32_t>(b.world.placements.size());
     Placement instance = make_placement(to_world, geometry);
@@ -164,13 +213,16 @@ void add_mesh_object(Builder& b, Entity entity, const Geometry& geometry, const 
   objects.first_light.back() = static_cast<uint32_t>(b.world.lights.size());
   for (uint32_t t = first; t < first + mesh.indices.size() / 3; ++t) {
     glm::dvec3 vertices[3];
+    glm::dvec2 uvs[3];
     for (int k = 0; k < 3; ++k) {
-      const float* p = b.world.positions.data() + size_t{3} * b.world.triangle_vertices[size_t{3} * t + k];
+      const size_t vertex = b.world.triangle_vertices[size_t{3} * t + k];
+      const float *p = b.world.positions.data() + 3 * vertex, *uv = b.world.uvs.data() + 2 * vertex;
       vertices[k] = {p[0], p[1], p[2]};
+      uvs[k] = std::isnan(uv[0]) ? glm::dvec2(k > 0, k > 1) : glm::dvec2(uv[0], uv[1]);  // as in systems/surface.cpp
     }
-    b.world.lights.push_back(triangle_light(vertices, b.scene.registry.get<Light>(entity)));
+    b.world.lights.push_back(triangle_light(vertices, uvs, b.scene.registry.get<Light>(entity)));
   }
-  spread_power_of(b, entity);
+  finish_lights(b, entity);
 }
 
 void add_quadric_object(Builder& b, Entity entity, const Geometry& geometry, const glm::dmat4& to_world) {
@@ -185,7 +237,20 @@ void add_quadric_object(Builder& b, Entity entity, const Geometry& geometry, con
   const Light light = b.scene.registry.get<Light>(entity);
   b.world.lights.push_back(geometry.kind == ShapeKind::sphere ? sphere_light(to_world, geometry, light)
                                                               : disk_light(to_world, geometry, light));
-  spread_power_of(b, entity);
+  finish_lights(b, entity);
+}
+
+// The last object's alpha. Of a constant one 0 is not there for any ray, and 1 is no mask.
+void mask_object(Builder& b, TextureId texture) {
+  if (texture == no_index) return;
+  const TextureProgram program = b.world.textures.programs[texture];
+  const TextureOp& first = b.world.textures.ops[program.begin];
+  if (program.end - program.begin == 1 && first.code == TextureOpcode::number) {
+    if (first.number <= 0) b.world.objects.visibility.back() = 0;
+    if (first.number <= 0 || first.number >= 1) return;
+  }
+  b.world.objects.alpha.back() = texture;
+  b.world.has_masks = true;
 }
 
 // The last object is an interface: it hides no light, but shadow rays look for it on their way.
@@ -229,19 +294,24 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
     const VolumeSides sides = entity.index < volumes.size() ? volumes[entity.index] : VolumeSides{};
     objects.volume_inside.push_back(sides.inside);
     objects.volume_outside.push_back(sides.outside);
-    const glm::dmat4& matrix = to_world[entity.index];
+    objects.alpha.push_back(no_index);
+    mask_object(b, geometry.alpha_texture);
     const double size = geometry.kind == ShapeKind::mesh ? b.mesh_extent[geometry.mesh] : extent(geometry, nullptr);
-    if (!is_within_reach(matrix, size))
+    const Place place = place_of(b, entity, to_world[entity.index]);
+    add_motion(world, place);
+    const bool reaches = std::all_of(place.keys.begin(), place.keys.end(),
+                                     [&](const glm::dmat4& key) { return is_within_reach(key, size); });
+    if (!reaches || !is_within_reach(place.to_world, size))
       diagnostics.error(scene.location(entity),
                         fmt::format("{} is too large, too small or too far away for single precision: shapes may reach "
                                     "1e18 m from the origin",
                                     scene.describe(entity)));
     if (geometry.kind == ShapeKind::mesh)
-      add_mesh_object(b, entity, geometry, scene.meshes[geometry.mesh], matrix);
+      add_mesh_object(b, entity, geometry, scene.meshes[geometry.mesh], place);
     else if (is_mesh)
-      add_mesh_object(b, entity, geometry, rectangle_mesh(geometry), matrix);
+      add_mesh_object(b, entity, geometry, rectangle_mesh(geometry), place);
     else
-      add_quadric_object(b, entity, geometry, matrix);
+      add_quadric_object(b, entity, geometry, place.to_world);
   });
   // Embree reads 16 bytes for the last vertex.
   for (int i = 0; i < 4; ++i) world.positions.push_back(0);

@@ -7,8 +7,10 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 
+#include "systems/build_light_images.h"
 #include "systems/freeze.h"
 #include "systems/light_rows.h"
 
@@ -70,7 +72,10 @@ double scene_radius(const World& world) {
 }
 
 // Proportional to the light's power, as luminous flux; what chooses among lights.
-double power_of(const World& world, const LightRow& row, double radius) {
+double power_of(const World& world, uint32_t index, double radius) {
+  const LightRow& row = world.lights[index];
+  const uint32_t image = world.image_of_light[index];
+  const double weight = image == no_index ? 1 : double{world.light_images.rows[image].weight};
   const double level = world.spectra.luminance(row.spectrum) * row.scale;
   switch (static_cast<LightShape>(row.shape)) {
     case LightShape::directional: return pi * radius * radius * level;
@@ -78,8 +83,15 @@ double power_of(const World& world, const LightRow& row, double radius) {
       const double half = row.axes[0];
       return pi * half * (2 - half) * pi * radius * radius * level;
     }
-    case LightShape::environment: return 4 * pi * pi * radius * radius * level * world.environment.mean_luminance;
-    default: return flux_per_unit(row) * level;
+    case LightShape::environment: {
+      const double solid_angle = image == no_index ? 4 * pi : weight;
+      for (const Environment& environment : world.environments) {
+        if (environment.light != index || !environment.has_portal()) continue;
+        return solid_angle / 4 * level * double{environment.portal.width} * double{environment.portal.height};
+      }
+      return solid_angle * pi * radius * radius * level;
+    }
+    default: return flux_per_unit(row) * level * weight;
   }
 }
 
@@ -130,6 +142,7 @@ void choose_lights(std::vector<double>& power, World& world) {
 
 void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics) {
   const Table<Light>& table = scene.registry.table<Light>();
+  while (world.image_of_light.size() < world.lights.size()) world.image_of_light.push_back(no_index);
   scene.registry.each<Light>([&](Entity entity, uint32_t table_row) {
     const Light light = table.get(table_row);
     if (light.kind == LightKind::area) {
@@ -138,30 +151,41 @@ void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, Worl
                           fmt::format("the area light {} has no geometry", scene.describe(entity)));
       return;
     }
-    const glm::dmat4& matrix = to_world[entity.index];
-    if (light.kind == LightKind::environment) {
-      if (world.environment.light != no_index) {
-        diagnostics.error(scene.location(entity), "a second environment light: only one is possible");
-        return;
-      }
-      world.environment.light = static_cast<uint32_t>(world.lights.size());
-      build_environment(light.image == no_index ? nullptr : &scene.images[light.image], matrix, world.settings.color,
-                        world.environment);
+    const auto row = static_cast<uint32_t>(world.lights.size());
+    const Image* image = light.image == no_index ? nullptr : &scene.images[light.image];
+    uint32_t image_row = no_index;
+    if (image != nullptr) {
+      const std::optional<uint32_t> added = add_light_image(scene, light, world);
+      if (!added) diagnostics.error(scene.location(entity), too_many_light_texels);
+      image_row = added.value_or(no_index);
     }
-    world.lights.push_back(abstract_light(matrix, light));
-    if (world.lights[world.lights.size() - 1].shape == static_cast<uint32_t>(LightShape::distant_disk))
-      world.distant_disks.push_back(static_cast<uint32_t>(world.lights.size() - 1));
+    const glm::dmat4& matrix = to_world[entity.index];
+    world.lights.push_back(abstract_light(matrix, light, image));
+    world.image_of_light.push_back(image_row);
+    if (light.kind == LightKind::environment) {
+      Environment environment;
+      environment.light = row;
+      environment.image = image_row;
+      build_environment(image, matrix, environment);
+      if (light.has_portal != 0) build_portal(light, image, environment);
+      world.has_portals = world.has_portals || environment.has_portal();
+      world.environments.push_back(std::move(environment));
+    }
+    if (world.lights[row].shape == static_cast<uint32_t>(LightShape::distant_disk)) world.distant_disks.push_back(row);
   });
   if (world.lights.empty()) return;
   const double radius = scene_radius(world);
   std::vector<double> power(world.lights.size());
   double total = 0;
-  for (size_t i = 0; i < power.size(); ++i) total += power[i] = power_of(world, world.lights[i], radius);
+  for (size_t i = 0; i < power.size(); ++i) total += power[i] = power_of(world, static_cast<uint32_t>(i), radius);
   if (!(total > 0)) {
     // Nothing shines: without lights there is nothing to sample.
     world.lights.clear();
+    world.image_of_light.clear();
+    world.light_images = LightImages{};
     world.distant_disks.clear();
-    world.environment = Environment{};
+    world.environments.clear();
+    world.has_portals = world.has_shape_images = false;
     for (uint32_t& light : world.objects.first_light) light = no_index;
     return;
   }

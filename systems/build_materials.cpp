@@ -19,6 +19,15 @@ MaterialRow add_diffuse(const Material& material, World& world) {
   return {ShadeKind::diffuse, static_cast<uint32_t>(world.diffuse.reflectance.size() - 1)};
 }
 
+MaterialRow add_diffuse_transmission(const Material& material, World& world) {
+  DiffuseTransmissionColumns& table = world.diffuse_transmission;
+  table.reflectance.push_back(material.reflectance);
+  table.transmittance.push_back(material.transmittance);
+  table.reflectance_texture.push_back(material.reflectance_texture);
+  table.transmittance_texture.push_back(material.transmittance_texture);
+  return {ShadeKind::diffuse_transmission, static_cast<uint32_t>(table.reflectance.size() - 1)};
+}
+
 // What it reflects of light from everywhere, seen along the normal: the integral of f_cos over the hemisphere.
 double rough_albedo(const Material& material, double kd, double ks) {
   if (material.normalized != 0) return kd + ks;
@@ -83,11 +92,23 @@ MaterialRow add_rough(const Material& material, World& world) {
   return {ShadeKind::rough, static_cast<uint32_t>(table.kd.size() - 1)};
 }
 
+// Programs in place of the widths; true where there are any: then the surface is rough everywhere.
+bool add_alpha_textures(const Material& material, Column<uint32_t> (&programs)[2], World& world) {
+  programs[0].push_back(material.alpha_x_texture);
+  programs[1].push_back(material.alpha_y_texture);
+  const bool varies = material.alpha_x_texture != no_index || material.alpha_y_texture != no_index;
+  world.has_textured_alpha = world.has_textured_alpha || varies;
+  if (varies && material.alpha_x_texture != material.alpha_y_texture) world.needs_tangents = true;
+  return varies;
+}
+
 MaterialRow add_conductor(const Material& material, World& world) {
-  const bool is_mirror_like = material.alpha_x < smooth_alpha && material.alpha_y < smooth_alpha;
+  const bool varies = add_alpha_textures(material, world.conductor.alpha_texture, world);
+  const bool is_mirror_like = !varies && material.alpha_x < smooth_alpha && material.alpha_y < smooth_alpha;
   ConductorColumns& table = world.conductor;
   table.eta.push_back(material.eta);
   table.kappa.push_back(material.kappa);
+  table.texture.push_back(material.reflectance_texture);
   // One width may be nearly nothing, the lobe's normalisation may not.
   table.alpha_x.push_back(std::max(material.alpha_x, least_alpha));
   table.alpha_y.push_back(std::max(material.alpha_y, least_alpha));
@@ -116,7 +137,8 @@ uint32_t add_medium(const Material& material, World& world) {
 }
 
 MaterialRow add_dielectric(const Material& material, World& world) {
-  const bool is_smooth = material.alpha_x < smooth_alpha && material.alpha_y < smooth_alpha;
+  const bool varies = add_alpha_textures(material, world.dielectric.alpha_texture, world);
+  const bool is_smooth = !varies && material.alpha_x < smooth_alpha && material.alpha_y < smooth_alpha;
   const bool is_partly_opaque = world.spectra.max_value(material.kappa) >= double{refracting_kappa};
   DielectricColumns& table = world.dielectric;
   table.eta.push_back(material.eta);
@@ -167,7 +189,8 @@ void check_optics(const Scene& scene, Entity entity, const Material& material, D
   const bool absorbs = spectra.max_value(material.kappa) > 0;
   if (material.kind == MaterialKind::dielectric && spectra.max_value(material.kappa) >= double{refracting_kappa})
     error("its kappa reaches 0.01, where matter is opaque; a dielectric's stays below, 'smooth' may have any");
-  if (material.thin != 0 && std::max(material.alpha_x, material.alpha_y) >= smooth_alpha)
+  const bool varies = material.alpha_x_texture != no_index || material.alpha_y_texture != no_index;
+  if (material.thin != 0 && (varies || std::max(material.alpha_x, material.alpha_y) >= smooth_alpha))
     error("a thin material has no roughness");
   if (material.thin != 0 && material.priority > 0) error("a thin material has no inside and takes no priority");
   if (material.thin != 0 && absorbs && material.thickness == 0) error("a thin material with kappa needs a thickness");
@@ -177,14 +200,31 @@ void check_optics(const Scene& scene, Entity entity, const Material& material, D
 MaterialRow add_material(const Material& material, World& world) {
   switch (material.kind) {
     case MaterialKind::diffuse: return add_diffuse(material, world);
+    case MaterialKind::diffuse_transmission: return add_diffuse_transmission(material, world);
     case MaterialKind::conductor: return add_conductor(material, world);
     case MaterialKind::rough: return add_rough(material, world);
-    case MaterialKind::coated: return add_coated(material, world);
+    case MaterialKind::coated:
+    case MaterialKind::layered: return add_coated(material, world);
     case MaterialKind::smooth: return add_smooth(material, world);
     case MaterialKind::interface: return {ShadeKind::interface, 0};
-    case MaterialKind::dielectric: break;
+    case MaterialKind::dielectric:
+    case MaterialKind::mix:
+    case MaterialKind::hair: break;
   }
   return add_dielectric(material, world);
+}
+
+// What bends the shading normal of a material's row.
+void add_bump(const Scene& scene, const Material& material, const MaterialRow& row, World& world) {
+  uint32_t key = material.displacement;
+  if (material.normal_map != no_index)
+    key = static_cast<uint32_t>(world.textures.programs.size()) +
+          add_normal_map(scene.images[material.normal_map], material.normal_map, world.textures);
+  if (key == no_index || row.kind == ShadeKind::absorber) return;
+  Column<uint32_t>& bumps = world.bumps[static_cast<size_t>(row.kind)];
+  while (bumps.size() <= row.row) bumps.push_back(no_index);
+  bumps[row.row] = key;
+  world.has_bumps = true;
 }
 
 }  // namespace
@@ -201,8 +241,11 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
     if (material.kind == MaterialKind::conductor || material.kind == MaterialKind::dielectric ||
         material.kind == MaterialKind::smooth)
       check_optics(scene, entity, material, diagnostics);
-    if (material.kind == MaterialKind::coated && !check_coated(scene, entity, material, diagnostics)) return;
+    const bool is_coated = material.kind == MaterialKind::coated || material.kind == MaterialKind::layered;
+    if (is_coated && !check_coated(scene, entity, material, diagnostics)) return;
+    if (material.kind == MaterialKind::mix) return;
     own[entity.index] = add_material(material, world);
+    add_bump(scene, material, own[entity.index], world);
   });
   if (world.media.eta.size() > largest_medium + 1)
     diagnostics.error({}, fmt::format("the scene has {} media that paths follow; at most {} are possible",
@@ -210,6 +253,7 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
   Material grey;
   grey.reflectance = world.spectra.add_constant(0.5).id;
   std::optional<MaterialRow> fallback;
+  add_mixes(scene, own, world, diagnostics);
   registry.each<Geometry>([&](Entity entity, uint32_t) {
     const Entity slot = registry.get<MaterialSlot>(entity).material;
     const Entity source = registry.has<Material>(slot) ? slot : entity;

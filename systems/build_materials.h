@@ -4,9 +4,14 @@
 
 namespace metamer {
 
-// Errors: roughness below 0 or not the same in both directions, eta not above 0, reflectance not in 0..1.
+// The material is coated or layered. Errors: roughness below 0 or, coated, not the same in both directions, eta not
+// above 0, reflectance not in 0..1, a layer's thickness below 0.
 bool check_coated(const Scene& scene, Entity entity, const Material& material, Diagnostics& diagnostics);
 // The material has passed its check.
 MaterialRow add_coated(const Material& material, World& world);
+
+// Rows of materials that are mixed of two others, into `rows` by entity index, where those of all others are. Errors:
+// amounts that are not numbers, materials mixed of themselves or of nothing.
+void add_mixes(const Scene& scene, std::vector<MaterialRow>& rows, World& world, Diagnostics& diagnostics);
 
 }  // namespace metamer

@@ -43,28 +43,32 @@ void hit_emission(const World& world, const ShadeStream& shade, size_t i, Slots&
   light_spectrum(world, light, lambda_nm, radiance);
   const VF profile = emission_profile(light, dot(wo, normal));
   for (VF& value : radiance) value = hn::Mul(value, profile);
+  if (world.has_shape_images)
+    apply_image(world, light, load(shade.uv[0], i), hn::Sub(splat(1.0f), load(shade.uv[1], i)), lambda_nm, radiance);
   const Vec3 from = mul_add(wo, distance, position);
   const VF pdf_light = area_light_pdf(light, from, position, normal, -wo, distance);
   add_radiance(seen, shade, i, radiance, weight_of(world, load(shade.pdf_direction, i), pdf_light), slots);
 }
 
-void miss_emission(const World& world, const ShadeStream& shade, size_t i, Slots& slots) {
-  const Environment& environment = world.environment;
+void miss_emission(const World& world, const Environment& environment, const ShadeStream& shade, size_t i,
+                   Slots& slots) {
   const LightFields light(world, hn::Set(IntTag(), static_cast<int>(environment.light)));
+  const Vec3 direction = -load(shade.wo, i);
+  MF seen = is_live(load(shade.slot, i));
+  Vec3 from = direction;  // matters to portals only
+  if (environment.has_portal()) {
+    from = load(shade.position, i);
+    seen = hn::And(seen, through_portal(environment.portal, from, direction));
+    if (hn::AllFalse(FloatTag(), seen)) return;
+  }
   VF lambda_nm[4], radiance[4];
   load(shade.lambda_nm, i, lambda_nm);
   light_spectrum(world, light, lambda_nm, radiance);
-  const Vec3 local = rotate(environment.to_local, -load(shade.wo, i));
-  const ImagePoint point = image_point(environment, local);
-  if (environment.width > 0) {
-    VF factor[4];
-    environment_image(environment, point.u, point.v, lambda_nm, factor);
-    for (int j = 0; j < 4; ++j) radiance[j] = hn::Mul(radiance[j], factor[j]);
-  }
-  const VF pdf_light =
-      hn::Mul(environment_pdf(environment, point), light.number(offsetof(LightRow, choice_probability)));
-  add_radiance(is_live(load(shade.slot, i)), shade, i, radiance,
-               weight_of(world, load(shade.pdf_direction, i), pdf_light), slots);
+  const ImagePoint point = image_point(environment.mapping, rotate(environment.to_local, direction));
+  apply_image(world, light, point.u, point.v, lambda_nm, radiance);
+  const VF pdf_light = hn::Mul(environment_pdf(environment, from, direction, point),
+                               light.number(offsetof(LightRow, choice_probability)));
+  add_radiance(seen, shade, i, radiance, weight_of(world, load(shade.pdf_direction, i), pdf_light), slots);
 }
 
 void disk_emission(const World& world, uint32_t row, const ShadeStream& shade, size_t i, Slots& slots) {
@@ -86,8 +90,8 @@ void emission_kernel(const World& world, const ShadeStream& shade, Slots& slots)
   const Group& miss = shade.groups[static_cast<size_t>(ShadeKind::miss)];
   if (!world.lights.empty())
     for (size_t i = 0; i < miss.begin; i += step) hit_emission(world, shade, i, slots);
-  if (world.environment.light != no_index)
-    for (size_t i = miss.begin; i < miss.padded_end(); i += step) miss_emission(world, shade, i, slots);
+  for (const Environment& environment : world.environments)
+    for (size_t i = miss.begin; i < miss.padded_end(); i += step) miss_emission(world, environment, shade, i, slots);
   for (const uint32_t row : world.distant_disks)
     for (size_t i = miss.begin; i < miss.padded_end(); i += step) disk_emission(world, row, shade, i, slots);
 }

@@ -1,4 +1,4 @@
-// Radiance from infinity by direction, and the density of its directions.
+// Directions from infinity: the mappings of images, and the density with which directions of an environment are drawn.
 #if defined(METAMER_SYSTEMS_ENVIRONMENT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef METAMER_SYSTEMS_ENVIRONMENT_INL_H_
 #undef METAMER_SYSTEMS_ENVIRONMENT_INL_H_
@@ -7,8 +7,9 @@
 #endif
 
 #include "engine/sampling/distribution-inl.h"
+#include "engine/sampling/warps-inl.h"
+#include "engine/sampling/window_distribution-inl.h"
 #include "engine/simd/math-inl.h"
-#include "engine/spectrum/spectrum-inl.h"
 #include "systems/lanes-inl.h"
 #include "systems/systems.h"
 
@@ -74,59 +75,88 @@ HWY_INLINE Vec3 equal_area_direction(VF image_u, VF image_v) {
   return {hn::CopySign(hn::Mul(angle.cos, radius), u), hn::CopySign(hn::Mul(angle.sin, radius), v), z};
 }
 
-HWY_INLINE ImagePoint image_point(const Environment& environment, const Vec3& local) {
-  return environment.mapping == ImageMapping::equal_area ? equal_area_point(local) : latitude_longitude_point(local);
+HWY_INLINE ImagePoint image_point(ImageMapping mapping, const Vec3& local) {
+  return mapping == ImageMapping::equal_area ? equal_area_point(local) : latitude_longitude_point(local);
 }
 
-// factor += weight times the spectrum of a texel.
-HWY_INLINE void add_texel(const Environment& environment, VI column, VI row, VF weight, const VF lambda_nm[4],
-                          VF factor[4]) {
-  const VI texel = hn::Add(hn::Mul(row, hn::Set(IntTag(), static_cast<int>(environment.width))), column);
-  const VI at = hn::ShiftLeft<2>(texel);
-  const float* texels = environment.texels.data();
-  if (environment.has_coefficients) {
-    for (int j = 0; j < 4; ++j)
-      factor[j] = hn::MulAdd(weight, gather(texels, hn::Add(at, channel_of(lambda_nm[j]))), factor[j]);
-    return;
+// Where a direction away from the scene leads through the portal's rectangle, from a point before it.
+HWY_INLINE MF through_portal(const Portal& portal, const Vec3& from, const Vec3& direction) {
+  const VF zero = hn::Zero(FloatTag());
+  const Vec3 corner = {splat(portal.corner[0]), splat(portal.corner[1]), splat(portal.corner[2])};
+  const Vec3 to_corner = rotate(portal.frame, corner - from), along = rotate(portal.frame, direction);
+  const VF t = hn::Div(to_corner.z, along.z);
+  const VF x = hn::MulSub(t, along.x, to_corner.x), y = hn::MulSub(t, along.y, to_corner.y);
+  const MF before = hn::And(hn::Gt(to_corner.z, zero), hn::Gt(along.z, zero));
+  const MF in_x = hn::And(hn::Ge(x, zero), hn::Le(x, splat(portal.width)));
+  return hn::And(hn::And(before, in_x), hn::And(hn::Ge(y, zero), hn::Le(y, splat(portal.height))));
+}
+
+// The part of the square of angles (see Portal) that a point sees; empty behind the portal.
+HWY_INLINE VF angle_coordinate(VF across, VF along) {
+  return hn::MulAdd(atan2(across, along), splat(inverse_pi), splat(0.5f));
+}
+HWY_INLINE WindowV portal_window(const Portal& portal, const Vec3& from) {
+  const VF zero = hn::Zero(FloatTag());
+  const Vec3 corner = {splat(portal.corner[0]), splat(portal.corner[1]), splat(portal.corner[2])};
+  const Vec3 q = rotate(portal.frame, corner - from);
+  const MF before = hn::Gt(q.z, zero);
+  const WindowV window = {angle_coordinate(q.x, q.z), angle_coordinate(q.y, q.z),
+                          angle_coordinate(hn::Add(q.x, splat(portal.width)), q.z),
+                          angle_coordinate(hn::Add(q.y, splat(portal.height)), q.z)};
+  return {window.x0, window.y0, hn::IfThenElse(before, window.x1, window.x0), window.y1};
+}
+// Area of the square of angles per solid angle, at a direction in the portal's frame: (1 - x^2) (1 - y^2) / (pi^2 z).
+HWY_INLINE VF portal_jacobian(const Vec3& along) {
+  const VF one = splat(1.0f);
+  const VF product = hn::Mul(hn::NegMulAdd(along.x, along.x, one), hn::NegMulAdd(along.y, along.y, one));
+  return hn::Div(hn::Mul(product, splat(inverse_pi * inverse_pi)), hn::Max(along.z, splat(1e-20f)));
+}
+
+struct EnvironmentSample {
+  Vec3 direction;
+  VF pdf;  // per solid angle; 0: no light from there
+  VF image_u, image_v;
+};
+HWY_INLINE EnvironmentSample sample_portal(const Environment& environment, const Vec3& from, VF u, VF v) {
+  const Portal& portal = environment.portal;
+  const WindowSampleV at = sample_window(portal.density, portal_window(portal, from), u, v);
+  const SinCos a = sincos_2pi(hn::Mul(hn::Sub(at.x, splat(0.5f)), splat(0.5f)));
+  const SinCos b = sincos_2pi(hn::Mul(hn::Sub(at.y, splat(0.5f)), splat(0.5f)));
+  const Vec3 along = normalize(Vec3{hn::Mul(a.sin, b.cos), hn::Mul(b.sin, a.cos), hn::Mul(a.cos, b.cos)});
+  const auto row = [&](int r) {
+    return Vec3{splat(portal.frame[3 * r]), splat(portal.frame[3 * r + 1]), splat(portal.frame[3 * r + 2])};
+  };
+  const Vec3 direction = mul_add(row(0), along.x, mul_add(row(1), along.y, row(2) * along.z));
+  const ImagePoint point = image_point(environment.mapping, rotate(environment.to_local, direction));
+  return {direction, hn::Mul(at.pdf, portal_jacobian(along)), point.u, point.v};
+}
+HWY_INLINE EnvironmentSample sample_sphere(const Environment& environment, VF u, VF v) {
+  const VF zero = hn::Zero(FloatTag());
+  if (environment.image == no_index)
+    return {rotate(environment.to_world, sample_uniform_sphere(u, v)), splat(uniform_sphere_pdf), zero, zero};
+  VF solid_angle = splat(4 * pi);
+  const SquareSampleV square = sample_square(environment.density, u, v);
+  const Vec3 local = environment.mapping == ImageMapping::equal_area
+                         ? equal_area_direction(square.x, square.y)
+                         : latitude_longitude_direction(square.x, square.y, &solid_angle);
+  return {rotate(environment.to_world, local), hn::Div(square.pdf, hn::Max(solid_angle, splat(1e-20f))), square.x,
+          square.y};
+}
+HWY_INLINE EnvironmentSample sample_environment(const Environment& environment, const Vec3& from, VF u, VF v) {
+  return environment.has_portal() ? sample_portal(environment, from, u, v) : sample_sphere(environment, u, v);
+}
+
+// Density per solid angle with which sample_environment draws a unit direction, whose image point this is.
+HWY_INLINE VF environment_pdf(const Environment& environment, const Vec3& from, const Vec3& direction,
+                              const ImagePoint& point) {
+  if (environment.has_portal()) {
+    const Portal& portal = environment.portal;
+    const Vec3 along = rotate(portal.frame, direction);
+    const VF pdf = window_pdf(portal.density, portal_window(portal, from), angle_coordinate(along.x, along.z),
+                              angle_coordinate(along.y, along.z));
+    return hn::Mul(pdf, portal_jacobian(along));
   }
-  const VF c0 = gather(texels, at), c1 = gather(texels + 1, at), c2 = gather(texels + 2, at);
-  const VF scale = hn::Mul(weight, gather(texels + 3, at));
-  for (int j = 0; j < 4; ++j) factor[j] = hn::MulAdd(scale, sigmoid_polynomial(c0, c1, c2, lambda_nm[j]), factor[j]);
-}
-
-// The image at (u, v), as a factor on the environment's spectrum. latitude_longitude: linear between texels' centres,
-// around the circle and clamped at the poles. equal_area: the texel itself, as in pbrt, whose files these are.
-// The density of directions stays constant on a texel: where a dark texel next to a bright one is never chosen, rays
-// of the BSDF find its light with full weight.
-HWY_INLINE void environment_image(const Environment& environment, VF u, VF v, const VF lambda_nm[4], VF factor[4]) {
-  const IntTag di;
-  const int width = static_cast<int>(environment.width), height = static_cast<int>(environment.height);
-  const VF x = hn::Mul(u, splat(static_cast<float>(width))), y = hn::Mul(v, splat(static_cast<float>(height)));
-  const VI last_column = hn::Set(di, width - 1), last_row = hn::Set(di, height - 1), zero = hn::Zero(di);
-  for (int j = 0; j < 4; ++j) factor[j] = hn::Zero(FloatTag());
-  if (environment.mapping == ImageMapping::equal_area) {
-    add_texel(environment, hn::Min(hn::ConvertTo(di, x), last_column), hn::Min(hn::ConvertTo(di, y), last_row),
-              splat(1.0f), lambda_nm, factor);
-    return;
-  }
-  const VF one = splat(1.0f), half = splat(0.5f);
-  const VF x_floor = hn::Floor(hn::Sub(x, half)), y_floor = hn::Floor(hn::Sub(y, half));
-  const VF right = hn::Sub(hn::Sub(x, half), x_floor), lower = hn::Sub(hn::Sub(y, half), y_floor);
-  const VI left = hn::ConvertTo(di, x_floor), top = hn::ConvertTo(di, y_floor);
-  const VI column0 = hn::IfThenElse(hn::Lt(left, zero), last_column, hn::Min(left, last_column));
-  const VI column1 = hn::IfThenElse(hn::Lt(left, last_column), hn::Add(left, hn::Set(di, 1)), zero);
-  const VI row0 = hn::Max(hn::Min(top, last_row), zero);
-  const VI row1 = hn::Max(hn::Min(hn::Add(top, hn::Set(di, 1)), last_row), zero);
-  const VF left_share = hn::Sub(one, right), upper_share = hn::Sub(one, lower);
-  add_texel(environment, column0, row0, hn::Mul(left_share, upper_share), lambda_nm, factor);
-  add_texel(environment, column1, row0, hn::Mul(right, upper_share), lambda_nm, factor);
-  add_texel(environment, column0, row1, hn::Mul(left_share, lower), lambda_nm, factor);
-  add_texel(environment, column1, row1, hn::Mul(right, lower), lambda_nm, factor);
-}
-
-// Density per solid angle of a world direction, the choice of the light apart.
-HWY_INLINE VF environment_pdf(const Environment& environment, const ImagePoint& point) {
-  if (environment.width == 0) return splat(0.25f * inverse_pi);
+  if (environment.image == no_index) return splat(uniform_sphere_pdf);
   const VF pdf = square_pdf(environment.density, point.u, point.v);
   return hn::Div(pdf, hn::Max(point.solid_angle, splat(1e-20f)));
 }

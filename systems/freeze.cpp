@@ -24,10 +24,12 @@ std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   build_camera(scene, to_world, *world, diagnostics);
   build_coefficients(*world);
   if (world->zero_area_triangles > 0)
-    diagnostics.warning({}, fmt::format("{} no area and cannot be hit",
-                                        world->zero_area_triangles == 1
-                                            ? std::string("1 triangle has")
-                                            : fmt::format("{} triangles have", world->zero_area_triangles)));
+    diagnostics.warning(
+        {},
+        fmt::format("{} no area and cannot be hit", world->zero_area_triangles == 1
+                                                        ? std::string("1 triangle has")
+                                                        : fmt::format("{} triangles have", world->zero_area_triangles)),
+        Strict::allows);
   if (diagnostics.has_errors()) return nullptr;
   build_accelerator(*world);
   build_camera_media(*world);

@@ -26,6 +26,9 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
 
 // Textures as programs, program i for texture i; images as texels. Errors: expressions that need too deep a stack.
 void build_textures(const Scene& scene, World& world, Diagnostics& diagnostics);
+// The row of an image as a normal map; one for all that use it.
+uint32_t add_normal_map(const Image& image, ImageId id, TextureSet& set);
+
 // Rows of World::volumes on both sides of an entity's surface.
 struct VolumeSides {
   uint32_t inside = keeps_volume, outside = keeps_volume;
@@ -38,9 +41,8 @@ std::vector<VolumeSides> build_volumes(const Scene& scene, World& world, Diagnos
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
                     std::span<const VolumeSides> volumes, World& world, Diagnostics& diagnostics);
 
-// The environment's image (null: none) as columns of spectra, or of the mode's coefficients, and a density, and its
-// rotation.
-void build_environment(const Image* image, const glm::dmat4& to_world, ColorMode color, Environment& environment);
+// An environment's rotation and the density of the directions of its image (null: none).
+void build_environment(const Image* image, const glm::dmat4& to_world, Environment& environment);
 
 // Lights that are no shapes (see light_rows.h), then the choice among all lights by power.
 void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, World& world, Diagnostics& diagnostics);

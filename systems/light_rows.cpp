@@ -11,7 +11,7 @@
 namespace metamer {
 namespace {
 
-using portable::cos, portable::sin;
+using portable::atan2, portable::cos, portable::sin;
 constexpr double pi = 3.14159265358979323846;
 
 LightRow row_of(LightShape shape, const Light& light) {
@@ -52,6 +52,13 @@ double one_minus_cos_deg(double degrees) {
 // Where a spot's falloff starts at its edge: a width of 1 - cos that no two floats differ by.
 constexpr double sharpest_falloff = 1e-30;
 
+// Half the width and height of a projection's image at unit distance.
+glm::dvec2 projection_extent(const Light& light, const Image* image) {
+  const double shorter = portable::tan(double{light.fov_deg} * pi / 360);
+  const double aspect = image != nullptr ? static_cast<double>(image->width) / image->height : 1;
+  return {shorter * std::max(aspect, 1.0), shorter * std::max(1 / aspect, 1.0)};
+}
+
 bool is_similarity(const glm::dmat3& m) {
   const double size = glm::dot(m[0], m[0]);
   const double tolerance = 1e-5 * size;
@@ -62,7 +69,50 @@ bool is_similarity(const glm::dmat3& m) {
 
 }  // namespace
 
-LightRow triangle_light(const glm::dvec3 (&vertex)[3], const Light& light) {
+glm::dvec2 image_point(ImageMapping mapping, const glm::dvec3& d) {
+  if (mapping == ImageMapping::latitude_longitude) {
+    const double turn = atan2(d.y, d.x) / (2 * pi);
+    return {turn < 0 ? turn + 1 : turn, atan2(std::sqrt(d.x * d.x + d.y * d.y), d.z) / pi};
+  }
+  const double r = std::sqrt(std::max(0.0, 1 - std::abs(d.z)));
+  double v = atan2(std::abs(d.y), std::abs(d.x)) * 2 / pi * r, u = r - v;
+  if (d.z < 0) {
+    const double folded = 1 - v;
+    v = 1 - u;
+    u = folded;
+  }
+  return {(std::copysign(u, d.x) + 1) / 2, (std::copysign(v, d.y) + 1) / 2};
+}
+
+double image_weight(const Light& light, const Image& image) {
+  const glm::dvec2 half = projection_extent(light, &image);
+  const Color3 luminance = rgb_to_xyz(image.color_space)[1];
+  double sum = 0;
+  for (uint32_t y = 0; y < image.height; ++y) {
+    double ring = 1;
+    if (light.kind != LightKind::area && image.mapping == ImageMapping::latitude_longitude)
+      ring = (cos(pi * y / image.height) - cos(pi * (y + 1) / image.height)) * image.height / 2;
+    for (uint32_t x = 0; x < image.width; ++x) {
+      const float* rgb = image.rgb.data() + 3 * (size_t{y} * image.width + x);
+      const double level =
+          luminance[0] * double{rgb[0]} + luminance[1] * double{rgb[1]} + luminance[2] * double{rgb[2]};
+      double measure = ring;
+      if (light.kind == LightKind::projection) {
+        // Solid angle per area at unit distance: cos^3.
+        const double across = half.x * (2 * (x + 0.5) / image.width - 1),
+                     up = half.y * (2 * (y + 0.5) / image.height - 1);
+        const double distance2 = 1 + across * across + up * up;
+        measure = 4 * half.x * half.y / (distance2 * std::sqrt(distance2));
+      }
+      sum += std::max(level, 0.0) * measure;
+    }
+  }
+  const double mean = sum / (static_cast<double>(image.width) * image.height);
+  const bool is_sphere = light.kind == LightKind::environment || light.kind == LightKind::goniometric;
+  return is_sphere ? 4 * pi * mean : mean;
+}
+
+LightRow triangle_light(const glm::dvec3 (&vertex)[3], const glm::dvec2 (&uv)[3], const Light& light) {
   LightRow row = row_of(LightShape::triangle, light);
   const glm::dvec3 edge1 = vertex[1] - vertex[0], edge2 = vertex[2] - vertex[0];
   const glm::dvec3 cross = glm::cross(edge1, edge2);
@@ -72,6 +122,10 @@ LightRow triangle_light(const glm::dvec3 (&vertex)[3], const Light& light) {
   store(row.axes + 3, edge2);
   if (length > 0) store(row.normal, cross / length);
   row.area = static_cast<float>(length / 2);
+  for (int c = 0; c < 2; ++c) {
+    row.inverse[c] = static_cast<float>(uv[0][c]);
+    for (int k = 1; k < 3; ++k) row.inverse[2 * k + c] = static_cast<float>(uv[k][c] - uv[0][c]);
+  }
   return row;
 }
 
@@ -104,7 +158,7 @@ LightRow disk_light(const glm::dmat4& to_world, const Geometry& geometry, const 
   return row;
 }
 
-LightRow abstract_light(const glm::dmat4& to_world, const Light& light) {
+LightRow abstract_light(const glm::dmat4& to_world, const Light& light, const Image* image) {
   const auto towards = [&] { return glm::normalize(glm::dvec3(to_world[2])); };  // light travels along -z
   LightRow row = row_of(LightShape::point, light);
   store(row.p, glm::dvec3(to_world[3]));
@@ -115,6 +169,18 @@ LightRow abstract_light(const glm::dmat4& to_world, const Light& light) {
     store(row.normal, -towards());
     row.axes[0] = static_cast<float>(cone);
     row.axes[1] = static_cast<float>(1 / std::max(width, sharpest_falloff));
+  } else if (light.kind == LightKind::goniometric || light.kind == LightKind::projection) {
+    row.shape =
+        static_cast<uint32_t>(light.kind == LightKind::goniometric ? LightShape::goniometric : LightShape::projection);
+    const glm::dmat3 inverse = glm::transpose(glm::inverse(glm::dmat3(to_world)));
+    for (int i = 0; i < 3; ++i) store(row.inverse + 3 * i, inverse[i]);
+    if (light.kind == LightKind::projection) {
+      const glm::dvec2 half = projection_extent(light, image);
+      row.axes[0] = static_cast<float>(half.x);
+      row.axes[1] = static_cast<float>(half.y);
+    } else {
+      row.mapping = static_cast<uint32_t>(image != nullptr ? image->mapping : ImageMapping::equal_area);
+    }
   } else if (light.kind == LightKind::directional) {
     row.shape = static_cast<uint32_t>(LightShape::directional);
     store(row.p, towards());
@@ -142,6 +208,8 @@ bool spread_power(const Light& light, std::span<LightRow> rows) {
 double flux_per_unit(const LightRow& row) {
   switch (static_cast<LightShape>(row.shape)) {
     case LightShape::point: return 4 * pi;
+    case LightShape::goniometric:
+    case LightShape::projection: return 1;
     case LightShape::spot: return pi * (2 * double{row.axes[0]} - 1 / double{row.axes[1]});
     default: return 2 * pi * row.area / (double{row.cosine_power} + 2) * (row.two_sided != 0 ? 2 : 1);
   }

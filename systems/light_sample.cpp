@@ -18,11 +18,12 @@ namespace {
 struct LightSample {
   Vec3 direction;
   VF distance, pdf, weight;
-  VF image_u, image_v;  // environment only
+  VF image_u, image_v;  // only of lights with an image
 };
 
 // Uniform over the shape's area; works for a reference point anywhere.
-HWY_INLINE void sample_area(const LightFields& light, VU shape, const Vec3& from, VF u, VF v, LightSample& sample) {
+HWY_INLINE void sample_area(const World& world, const LightFields& light, VU shape, const Vec3& from, VF u, VF v,
+                            LightSample& sample) {
   const VF one = splat(1.0f), zero = hn::Zero(FloatTag());
   const Vec3 p = light.vector(offsetof(LightRow, p));
   const Vec3 a = light.vector(offsetof(LightRow, axes)), b = light.vector(offsetof(LightRow, axes) + 12);
@@ -30,6 +31,13 @@ HWY_INLINE void sample_area(const LightFields& light, VU shape, const Vec3& from
   Vec3 point = mul_add(a, corner.b1, mul_add(b, corner.b2, p));
   Vec3 normal = light.vector(offsetof(LightRow, normal));
   VF pdf_area = hn::Div(one, hn::Max(light.number(offsetof(LightRow, area)), splat(1e-38f)));
+  if (world.has_shape_images) {
+    const size_t uv = offsetof(LightRow, inverse);
+    const VF across = hn::MulAdd(corner.b1, light.number(uv + 8), light.number(uv));
+    const VF up = hn::MulAdd(corner.b1, light.number(uv + 12), light.number(uv + 4));
+    store_uv(is_shape(shape, LightShape::triangle), hn::MulAdd(corner.b2, light.number(uv + 16), across),
+             hn::MulAdd(corner.b2, light.number(uv + 20), up), &sample.image_u, &sample.image_v);
+  }
   const MF disk = is_shape(shape, LightShape::disk);
   if (!hn::AllFalse(FloatTag(), disk)) {
     const VF inner = light.number(offsetof(LightRow, inner));
@@ -38,6 +46,8 @@ HWY_INLINE void sample_area(const LightFields& light, VU shape, const Vec3& from
     const SinCos phi = sincos_2pi(v);
     const Vec3 on_disk = mul_add(a, hn::Mul(r, phi.cos), mul_add(b, hn::Mul(r, phi.sin), p));
     point = if_then_else(disk, on_disk, point);
+    const VF from_rim = hn::Div(hn::Sub(one, r), hn::Max(hn::Sub(one, inner), splat(1e-38f)));
+    store_uv(disk, v, from_rim, &sample.image_u, &sample.image_v);
   }
   const MF round = hn::Or(is_shape(shape, LightShape::sphere), is_shape(shape, LightShape::ellipsoid));
   if (!hn::AllFalse(FloatTag(), round)) {
@@ -49,6 +59,7 @@ HWY_INLINE void sample_area(const LightFields& light, VU shape, const Vec3& from
     const Vec3 outside = normalize(area) * light.number(offsetof(LightRow, normal_sign));
     normal = if_then_else(round, outside, normal);
     pdf_area = hn::IfThenElse(round, ellipsoid_area_pdf(light, q), pdf_area);
+    if (world.has_shape_images) store_sphere_uv(round, q, &sample.image_u, &sample.image_v);
   }
   const Vec3 to_light = point - from;
   const VF distance2 = hn::Max(dot(to_light, to_light), splat(1e-30f));
@@ -63,7 +74,8 @@ HWY_INLINE void sample_area(const LightFields& light, VU shape, const Vec3& from
 
 // Uniform in the cone under which a sphere is seen: Shirley, Wang, Zimmerman, "Monte Carlo Techniques for Direct
 // Lighting Calculations", ACM TOG 15(1), 1996. From inside it has no cone: sample_area serves.
-HWY_INLINE void sample_sphere_cone(const LightFields& light, const Vec3& from, VF u, VF v, LightSample& sample) {
+HWY_INLINE void sample_sphere_cone(const World& world, const LightFields& light, const Vec3& from, VF u, VF v,
+                                   LightSample& sample) {
   const VF zero = hn::Zero(FloatTag());
   const SphereCone cone = sphere_cone(light, from);
   const Vec3 in_cone = sample_uniform_cone(u, v, cone.one_minus_cos);
@@ -82,6 +94,9 @@ HWY_INLINE void sample_sphere_cone(const LightFields& light, const Vec3& from, V
   const VF cos_light = hn::Div(half_chord, hn::Sqrt(hn::Max(cone.radius2, splat(1e-38f))));
   const VF weight = hn::Div(emission_profile(light, cos_light), pdf);
   sample.weight = hn::IfThenElse(outside, hn::IfThenElseZero(lit, weight), sample.weight);
+  if (world.has_shape_images)
+    store_sphere_uv(outside, ellipsoid_unit_point(light, mul_add(direction, distance, from)), &sample.image_u,
+                    &sample.image_v);
 }
 
 HWY_INLINE void sample_point_light(const LightFields& light, const Vec3& from, LightSample& sample) {
@@ -96,6 +111,16 @@ HWY_INLINE void sample_point_light(const LightFields& light, const Vec3& from, L
 HWY_INLINE void sample_spot(const LightFields& light, const Vec3& from, LightSample& sample) {
   sample_point_light(light, from, sample);
   sample.weight = hn::Mul(sample.weight, spot_falloff(light, -sample.direction));
+}
+
+HWY_INLINE void sample_image_light(const LightFields& light, VU shape, const Vec3& from, LightSample& sample) {
+  sample_point_light(light, from, sample);
+  const LightImagePoint sphere = goniometric_point(light, -sample.direction);
+  const LightImagePoint window = projection_point(light, -sample.direction);
+  const MF throws = is_shape(shape, LightShape::projection);
+  sample.image_u = hn::IfThenElse(throws, window.u, sphere.u);
+  sample.image_v = hn::IfThenElse(throws, window.v, sphere.v);
+  sample.weight = hn::IfThenZeroElse(hn::AndNot(window.inside, throws), sample.weight);
 }
 
 // Uniform in the disc's solid angle.
@@ -114,22 +139,18 @@ HWY_INLINE void sample_directional(const LightFields& light, LightSample& sample
   sample.weight = splat(1.0f);
 }
 
-HWY_INLINE void sample_environment(const Environment& environment, VF u, VF v, LightSample& sample) {
-  Vec3 local;
-  if (environment.width == 0) {
-    local = sample_uniform_sphere(u, v);
-    sample.pdf = splat(uniform_sphere_pdf);
-  } else {
-    VF solid_angle = splat(4 * pi);
-    const SquareSampleV square = sample_square(environment.density, u, v);
-    sample.image_u = square.x;
-    sample.image_v = square.y;
-    local = environment.mapping == ImageMapping::equal_area
-                ? equal_area_direction(sample.image_u, sample.image_v)
-                : latitude_longitude_direction(sample.image_u, sample.image_v, &solid_angle);
-    sample.pdf = hn::Div(square.pdf, hn::Max(solid_angle, splat(1e-20f)));
+HWY_INLINE void sample_environments(const World& world, const LightFields& light, const Vec3& from, VF u, VF v,
+                                    LightSample& sample) {
+  for (const Environment& environment : world.environments) {
+    const VI row = hn::Set(IntTag(), static_cast<int>(environment.light));
+    const MF chosen = hn::RebindMask(FloatTag(), hn::Eq(light.light, row));
+    if (hn::AllFalse(FloatTag(), chosen)) continue;
+    const EnvironmentSample drawn = sample_environment(environment, from, u, v);
+    sample.direction = if_then_else(chosen, drawn.direction, sample.direction);
+    sample.pdf = hn::IfThenElse(chosen, drawn.pdf, sample.pdf);
+    sample.image_u = hn::IfThenElse(chosen, drawn.image_u, sample.image_u);
+    sample.image_v = hn::IfThenElse(chosen, drawn.image_v, sample.image_v);
   }
-  sample.direction = rotate(environment.to_world, local);
   sample.distance = hn::Inf(FloatTag());
   sample.weight = hn::IfThenElseZero(hn::Gt(sample.pdf, hn::Zero(FloatTag())), hn::Div(splat(1.0f), sample.pdf));
 }
@@ -146,11 +167,11 @@ HWY_INLINE LightSample sample_light(const World& world, const LightFields& light
   const VF zero = hn::Zero(d);
   LightSample sample{{zero, zero, zero}, zero, zero, zero, zero, zero};
   const MF area = float_mask(hn::Lt(shape, splat_u(static_cast<uint32_t>(LightShape::point))));
-  if (!hn::AllFalse(d, area)) sample_area(light, shape, from, u, v, sample);
+  if (!hn::AllFalse(d, area)) sample_area(world, light, shape, from, u, v, sample);
   const MF sphere = is_shape(shape, LightShape::sphere);
   LightSample other = sample;
   if (!hn::AllFalse(d, sphere)) {
-    sample_sphere_cone(light, from, u, v, other);
+    sample_sphere_cone(world, light, from, u, v, other);
     sample = select(sphere, other, sample);
   }
   const MF point = is_shape(shape, LightShape::point);
@@ -162,6 +183,11 @@ HWY_INLINE LightSample sample_light(const World& world, const LightFields& light
   if (!hn::AllFalse(d, spot)) {
     sample_spot(light, from, other);
     sample = select(spot, other, sample);
+  }
+  const MF image = hn::Or(is_shape(shape, LightShape::goniometric), is_shape(shape, LightShape::projection));
+  if (!hn::AllFalse(d, image)) {
+    sample_image_light(light, shape, from, other);
+    sample = select(image, other, sample);
   }
   const MF distant_disk = is_shape(shape, LightShape::distant_disk);
   if (!hn::AllFalse(d, distant_disk)) {
@@ -175,7 +201,7 @@ HWY_INLINE LightSample sample_light(const World& world, const LightFields& light
   }
   const MF environment = is_shape(shape, LightShape::environment);
   if (!hn::AllFalse(d, environment)) {
-    sample_environment(world.environment, u, v, other);
+    sample_environments(world, light, from, u, v, other);
     sample = select(environment, other, sample);
   }
   return sample;
@@ -187,12 +213,7 @@ HWY_INLINE void store_light_sample(const World& world, const LightFields& light,
   VF lambda_nm[4], radiance[4];
   load(shade.lambda_nm, i, lambda_nm);
   light_spectrum(world, light, lambda_nm, radiance);
-  if (world.environment.width > 0) {
-    VF factor[4];
-    environment_image(world.environment, sample.image_u, sample.image_v, lambda_nm, factor);
-    const MF image = is_shape(light.word(offsetof(LightRow, shape)), LightShape::environment);
-    for (int j = 0; j < 4; ++j) radiance[j] = hn::IfThenElse(image, hn::Mul(radiance[j], factor[j]), radiance[j]);
-  }
+  apply_image(world, light, sample.image_u, sample.image_v, lambda_nm, radiance);
   const VF weight = hn::Div(sample.weight, probability);
   for (int j = 0; j < 4; ++j) radiance[j] = hn::Mul(radiance[j], weight);
   // What lets light in looks into two media: its kernel knows which of them lies before the light.

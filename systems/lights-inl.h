@@ -13,6 +13,7 @@
 #include "engine/spectrum/spectrum-inl.h"
 #include "systems/environment-inl.h"
 #include "systems/lanes-inl.h"
+#include "systems/light_image-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
@@ -20,9 +21,10 @@ namespace metamer::HWY_NAMESPACE {
 // The rows of World::lights as floats, for gathers; `offset` names a field.
 struct LightFields {
   const float* base;
+  VI light;
   VI row;  // first float of each lane's row
-  HWY_INLINE LightFields(const World& world, VI light)
-      : base(reinterpret_cast<const float*>(world.lights.data())), row(hn::ShiftLeft<5>(light)) {}
+  HWY_INLINE LightFields(const World& world, VI lights)
+      : base(reinterpret_cast<const float*>(world.lights.data())), light(lights), row(hn::ShiftLeft<5>(lights)) {}
   HWY_INLINE VF number(size_t offset) const { return gather(base + offset / sizeof(float), row); }
   HWY_INLINE VU word(size_t offset) const { return hn::BitCast(UintTag(), number(offset)); }
   HWY_INLINE Vec3 vector(size_t offset) const { return gather_vec3(base + offset / sizeof(float), row); }
@@ -40,11 +42,24 @@ HWY_INLINE VF power_heuristic(VF a, VF b) {
   return hn::Div(splat(1.0f), hn::MulAdd(ratio, ratio, splat(1.0f)));
 }
 
-// Radiance of the lanes' lights (spectrum times scale) at the path's wavelengths; images of the environment apart.
+// Radiance of the lanes' lights (spectrum times scale) at the path's wavelengths, images apart.
 HWY_INLINE void light_spectrum(const World& world, const LightFields& light, const VF lambda_nm[4], VF out[4]) {
   eval_spectrum4(world.spectra.view(), light.word(offsetof(LightRow, spectrum)), lambda_nm, out);
   const VF scale = light.number(offsetof(LightRow, scale));
   for (int j = 0; j < 4; ++j) out[j] = hn::Mul(out[j], scale);
+}
+
+// Times the images of the lanes' lights at these points, where they have one.
+HWY_INLINE void apply_image(const World& world, const LightFields& light, VF u, VF v, const VF lambda_nm[4],
+                            VF radiance[4]) {
+  if (world.light_images.rows.empty()) return;
+  const VU image = gather(world.image_of_light.data(), light.light);
+  const auto has_image = hn::Ne(image, splat_u(no_index));
+  if (hn::AllFalse(UintTag(), has_image)) return;
+  VF factor[4];
+  light_image(world.light_images, as_index(hn::IfThenElseZero(has_image, image)), u, v, lambda_nm, factor);
+  for (int j = 0; j < 4; ++j)
+    radiance[j] = hn::Mul(radiance[j], hn::IfThenElse(float_mask(has_image), factor[j], splat(1.0f)));
 }
 
 // How much of its radiance a shape sends to the angle whose cosine (of either sign) this is.
@@ -63,6 +78,49 @@ HWY_INLINE VF spot_falloff(const LightFields& light, const Vec3& direction) {
   const VF inside = hn::NegMulAdd(splat(0.5f), dot(off, off), light.number(cone));
   const VF t = clamp(hn::Mul(inside, light.number(cone + 4)), 0.0f, 1.0f);
   return hn::Mul(hn::Mul(t, t), hn::NegMulAdd(splat(2.0f), t, splat(3.0f)));
+}
+
+// The image point to which a goniometric light or a projection sends a direction, with any length; `inside`: it does.
+struct LightImagePoint {
+  VF u, v;
+  MF inside;
+};
+HWY_INLINE Vec3 light_local(const LightFields& light, const Vec3& v) {
+  const size_t inverse = offsetof(LightRow, inverse);
+  return {dot(light.vector(inverse), v), dot(light.vector(inverse + 12), v), dot(light.vector(inverse + 24), v)};
+}
+HWY_INLINE LightImagePoint goniometric_point(const LightFields& light, const Vec3& direction) {
+  const Vec3 local = normalize(light_local(light, direction));
+  const ImagePoint equal_area = equal_area_point(local), angles = latitude_longitude_point(local);
+  const VU mapping = light.word(offsetof(LightRow, mapping));
+  const MF is_equal_area = float_mask(hn::Eq(mapping, splat_u(static_cast<uint32_t>(ImageMapping::equal_area))));
+  return {hn::IfThenElse(is_equal_area, equal_area.u, angles.u), hn::IfThenElse(is_equal_area, equal_area.v, angles.v),
+          hn::Eq(local.x, local.x)};
+}
+HWY_INLINE LightImagePoint projection_point(const LightFields& light, const Vec3& direction) {
+  const VF zero = hn::Zero(FloatTag()), half = splat(0.5f);
+  const Vec3 local = light_local(light, direction);
+  const MF ahead = hn::Gt(local.z, zero);
+  const size_t extent = offsetof(LightRow, axes);
+  const VF right = hn::Div(local.x, hn::Mul(local.z, light.number(extent)));
+  const VF up = hn::Div(local.y, hn::Mul(local.z, light.number(extent + 4)));
+  const MF inside = hn::And(hn::Le(hn::Abs(right), splat(1.0f)), hn::Le(hn::Abs(up), splat(1.0f)));
+  const VF u = hn::MulAdd(half, right, half), v = hn::NegMulAdd(half, up, half);
+  const MF all = hn::And(ahead, inside);
+  return {hn::IfThenElseZero(all, u), hn::IfThenElseZero(all, v), all};
+}
+
+// The image point of a surface's (u, v), v up.
+HWY_INLINE void store_uv(MF mask, VF u, VF v, VF* image_u, VF* image_v) {
+  *image_u = hn::IfThenElse(mask, u, *image_u);
+  *image_v = hn::IfThenElse(mask, hn::Sub(splat(1.0f), v), *image_v);
+}
+// Of a sphere's (u, v) at a point of the unit sphere, as in systems/surface.cpp: v is down from the pole, as the
+// image's.
+HWY_INLINE void store_sphere_uv(MF mask, const Vec3& q, VF* image_u, VF* image_v) {
+  const ImagePoint point = latitude_longitude_point(q);
+  *image_u = hn::IfThenElse(mask, point.u, *image_u);
+  *image_v = hn::IfThenElse(mask, point.v, *image_v);
 }
 
 // The cone under which a sphere is seen from outside.
@@ -95,11 +153,7 @@ HWY_INLINE VF ellipsoid_area_pdf(const LightFields& light, const Vec3& unit_poin
   return hn::Div(splat(0.25f * inverse_pi), hn::Sqrt(hn::Max(dot(area, area), splat(1e-38f))));
 }
 HWY_INLINE Vec3 ellipsoid_unit_point(const LightFields& light, const Vec3& position) {
-  const Vec3 v = position - light.vector(offsetof(LightRow, p));
-  const size_t inverse = offsetof(LightRow, inverse);
-  const Vec3 q = {dot(light.vector(inverse), v), dot(light.vector(inverse + 12), v),
-                  dot(light.vector(inverse + 24), v)};
-  return normalize(q);
+  return normalize(light_local(light, position - light.vector(offsetof(LightRow, p))));
 }
 
 HWY_INLINE VF area_to_solid_angle(VF pdf_area, VF distance2, VF cos_light) {

@@ -46,11 +46,12 @@ void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, C
     counters.lost_rays +=
         volumes(world, depth, paths, batch.hits, batch.order, shade, batch.slots, &counters.embree_seconds);
   clock.charge(SystemId::volumes);
-  sort_hits(world, paths.size, batch.hits, batch.order, shade.groups);
+  sort_hits(world, depth, paths, batch.hits, batch.order, shade.groups);
   shade.size = shade.groups.back().padded_end();
   count_lanes(shade, paths.size, counters);
   clock.charge(SystemId::sort);
   surface(world, paths, batch.hits, batch.order, shade);
+  bump(world, shade);
   textures(world, depth, shade);
   clock.charge(SystemId::surface);
   if (world.has_interiors) media(world, shade);
@@ -155,6 +156,7 @@ void trace_batch(const World& world, std::span<const RayPacket> packets, const T
 
 void shade_rough_kinds(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
   shade_diffuse(world, work, shade, shadow);
+  shade_diffuse_transmission(world, work, shade, shadow);
   shade_rough(world, work, shade, shadow);
   shade_smooth_coated(world, work, shade, shadow);
   shade_rough_coated(world, work, shade, shadow);
@@ -216,7 +218,9 @@ void Counters::add(const Counters& other) {
 
 void trace_tile(const World& world, const TileRect& tile, uint32_t sample_begin, uint32_t sample_end, Batch& batch,
                 TileFilm& film, Counters& counters) {
-  film.reset(tile.x0, tile.y0, tile.width(), tile.height(), sample_begin, sample_end, world.settings.band_count);
+  const TileRect rendered = rendered_pixels(world.settings);
+  film.reset(tile.x0 - rendered.x0, tile.y0 - rendered.y0, tile.width(), tile.height(), sample_begin, sample_end,
+             world.settings.band_count);
   constexpr uint32_t packets_per_batch = batch_capacity / column_lanes;
   std::array<RayPacket, packets_per_batch> packets;
   const uint32_t most = rays_per_batch(world) / column_lanes;

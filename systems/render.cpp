@@ -52,6 +52,13 @@ void render_unit(void* context, uint32_t worker_index, size_t unit) {
   frame.progress.samples_done.fetch_add(samples, std::memory_order_relaxed);
 }
 
+std::vector<TileRect> tiles_of(const TileRect& rendered, uint32_t tile_size) {
+  std::vector<TileRect> tiles = make_tiles(rendered.width(), rendered.height(), tile_size);
+  for (TileRect& tile : tiles)
+    tile = {tile.x0 + rendered.x0, tile.y0 + rendered.y0, tile.x1 + rendered.x0, tile.y1 + rendered.y0};
+  return tiles;
+}
+
 // The systems' clocks tell the wall's time. On a machine that others use, too, a worker is kept waiting in the midst of
 // any system: their seconds are shares of the processor time that the workers really had.
 void to_processor_time(RenderStats& stats) {
@@ -73,11 +80,11 @@ RenderStats render(const World& world, const RenderOptions& options, const Cance
   Frame frame{world,
               film,
               progress,
-              make_tiles(settings.width, settings.height, options.tile_size),
+              tiles_of(rendered_pixels(settings), options.tile_size),
               make_passes(settings.samples_per_pixel),
               {},
               Clock::now()};
-  progress.samples_total = uint64_t{settings.width} * settings.height * settings.samples_per_pixel;
+  progress.samples_total = uint64_t{film.width()} * film.height() * settings.samples_per_pixel;
   for (uint32_t i = 0; i < stats.threads; ++i) frame.workers.push_back(std::make_unique<Worker>());
   const double cpu_before = process_cpu_seconds();
   run_units(stats.threads, frame.tiles.size() * frame.passes.size(), cancellation, render_unit, &frame);

@@ -9,6 +9,7 @@
 
 #include "engine/sampling/points-inl.h"
 #include "engine/spectrum/spectrum-inl.h"
+#include "systems/bsdf/limits.h"
 #include "systems/bsdf/local-inl.h"
 #include "systems/dimensions.h"
 #include "systems/lanes-inl.h"
@@ -84,6 +85,7 @@ HWY_INLINE void append_weighted_shadow_rays(const ShadeStream& shade, size_t i, 
     append(counts, lambda_nm, shadow.lambda_nm, shadow.size);
     append(counts, volume_towards(shade, i, direction), shadow.volume, shadow.size);
   }
+  if (shade.carries_time) append(counts, load(shade.time, i), shadow.time, shadow.size);
   shadow.size += static_cast<uint32_t>(hn::CountTrue(FloatTag(), counts));
 }
 HWY_INLINE void append_shadow_rays(const ShadeStream& shade, size_t i, const VF f_cos[4], VF pdf_bsdf,
@@ -140,6 +142,7 @@ HWY_INLINE void append_ray(MF mask, const ShadeStream& shade, size_t i, const Ne
   append(mask, load(shade.pixel_seed, i), next.pixel_seed, at);
   append(mask, load(shade.index, i), next.index, at);
   append(mask, load(shade.slot, i), next.slot, at);
+  if (shade.carries_time) append(mask, load(shade.time, i), next.time, at);
   if (shade.carries_media)
     for (size_t k = 0; k < 2; ++k) append(mask, load(shade.next_media[k], i), next.media[k], at);
   if (shade.carries_volumes) append(mask, volume_towards(shade, i, ray.direction), next.volume, at);
@@ -177,15 +180,29 @@ HWY_INLINE VI material_row(const ShadeStream& shade, size_t i) {
   return as_index(hn::IfThenElseZero(live, load(shade.material, i)));
 }
 
-// The reflectance of each lane's material: of spectrum `ids[row]`, or what `textures` made of program `programs[row]`.
+// The reflectance of each lane's material: of spectrum `ids[row]`, or what `textures` made of program `programs[row]`
+// and left in `made`.
 HWY_INLINE void lane_reflectance(const World& world, const Column<uint32_t>& ids, const Column<uint32_t>& programs,
-                                 VI row, const ShadeStream& shade, size_t i, VF out[4]) {
+                                 const Columns<float, 4>& made, VI row, const ShadeStream& shade, size_t i, VF out[4]) {
   VF lambda_nm[4];
   load(shade.lambda_nm, i, lambda_nm);
   eval_spectrum4(world.spectra.view(), gather(ids.data(), row), lambda_nm, out);
   if (!world.has_textures()) return;
   const MF textured = float_mask(hn::Ne(gather(programs.data(), row), splat_u(no_index)));
-  for (size_t j = 0; j < 4; ++j) out[j] = hn::IfThenElse(textured, load(shade.reflectance[j], i), out[j]);
+  for (size_t j = 0; j < 4; ++j) out[j] = hn::IfThenElse(textured, load(made[j], i), out[j]);
+}
+HWY_INLINE void lane_reflectance(const World& world, const Column<uint32_t>& ids, const Column<uint32_t>& programs,
+                                 VI row, const ShadeStream& shade, size_t i, VF out[4]) {
+  lane_reflectance(world, ids, programs, shade.reflectance, row, shade, i, out);
+}
+
+// A GGX width of each lane's material: a number of its row, or what `textures` made of program `programs[row]`.
+HWY_INLINE VF lane_alpha(const World& world, const Column<float>& alphas, const Column<uint32_t>& programs, VI row,
+                         const float* textured_alpha, size_t i) {
+  const VF alpha = gather(alphas.data(), row);
+  if (!world.has_textured_alpha) return alpha;
+  const MF textured = float_mask(hn::Ne(gather(programs.data(), row), splat_u(no_index)));
+  return hn::IfThenElse(textured, hn::Max(load(textured_alpha, i), splat(least_alpha)), alpha);
 }
 
 }  // namespace metamer::HWY_NAMESPACE

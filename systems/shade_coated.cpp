@@ -18,6 +18,8 @@ HWY_INLINE CoatOptics coat_optics(const World& world, const CoatedColumns& table
   lane_reflectance(world, table.reflectance, table.texture, row, shade, i, optics.albedo);
   eval_spectrum4(spectra, gather(table.eta.data(), row), lambda_nm, optics.eta);
   optics.schlick = float_mask(hn::Ne(gather(table.schlick.data(), row), splat_u(0)));
+  optics.thickness = gather(table.thickness.data(), row);
+  optics.hits = gather(table.hits.data(), row);
   optics.table = table.albedos.data();
   optics.rows = {as_index(gather(table.first_row.data(), row)), as_index(gather(table.row_stride.data(), row)),
                  as_index(gather(table.last_pair.data(), row)), gather(table.eta_least.data(), row),
@@ -79,9 +81,10 @@ void shade_rough_coated_kernel(const World& world, const ShadeWork& work, ShadeS
   for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
     const VI row = material_row(shade, i);
     const CoatOptics optics = coat_optics(world, world.rough_coated, shade, i, row);
-    const VF alpha = gather(world.rough_coated.alpha.data(), row);
+    const VF alpha_x = gather(world.rough_coated.alpha_x.data(), row);
+    const VF alpha_y = gather(world.rough_coated.alpha_y.data(), row);
     const Frame frame = shading_frame(world, shade, i);
-    const GgxLobe lobe = make_ggx_lobe(to_local(frame, load(shade.wo, i)), alpha, alpha);
+    const GgxLobe lobe = make_ggx_lobe(to_local(frame, load(shade.wo, i)), alpha_x, alpha_y);
     const CoatView view = make_rough_coat_view(lobe, optics);
     VF f_cos[4], pdf;
     if (work.weigh_light) {

@@ -9,6 +9,20 @@ HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
 namespace {
 
+// Where a reflectance along the normal is given: eta 1 and kappa 2 sqrt(R) / sqrt(1 - R), as pbrt-v4.
+HWY_INLINE void apply_reflectance(const World& world, const ShadeStream& shade, size_t i, VI row,
+                                  ConductorOptics& optics) {
+  const VF one = splat(1.0f);
+  const MF given = float_mask(hn::Ne(gather(world.conductor.texture.data(), row), splat_u(no_index)));
+  if (hn::AllFalse(FloatTag(), given)) return;
+  for (size_t j = 0; j < 4; ++j) {
+    const VF reflectance = clamp(load(shade.reflectance[j], i), 0.0f, 0.9999f);
+    const VF kappa = hn::Mul(splat(2.0f), hn::Sqrt(hn::Div(reflectance, hn::Sub(one, reflectance))));
+    optics.n[j] = hn::IfThenElse(given, one, optics.n[j]);
+    optics.kappa[j] = hn::IfThenElse(given, kappa, optics.kappa[j]);
+  }
+}
+
 HWY_INLINE ConductorOptics conductor_optics(const World& world, const ShadeStream& shade, size_t i, VI row) {
   const SpectrumView spectra = world.spectra.view();
   VF lambda_nm[4];
@@ -16,6 +30,7 @@ HWY_INLINE ConductorOptics conductor_optics(const World& world, const ShadeStrea
   ConductorOptics optics;
   eval_spectrum4(spectra, gather(world.conductor.eta.data(), row), lambda_nm, optics.n);
   eval_spectrum4(spectra, gather(world.conductor.kappa.data(), row), lambda_nm, optics.kappa);
+  if (world.has_textures()) apply_reflectance(world, shade, i, row, optics);
   if (world.has_interiors) {
     const VU around = load_media(shade.media, i).entry[0];
     make_relative(world, around, lambda_nm, optics.n);
@@ -32,8 +47,9 @@ void shade_rough_conductor_kernel(const World& world, const ShadeWork& work, Sha
     const ConductorOptics optics = conductor_optics(world, shade, i, row);
     const Frame frame = shading_frame(world, shade, i);
     const Vec3 wo = to_local(frame, load(shade.wo, i));
-    const GgxLobe lobe =
-        make_ggx_lobe(wo, gather(world.conductor.alpha_x.data(), row), gather(world.conductor.alpha_y.data(), row));
+    const GgxLobe lobe = make_ggx_lobe(
+        wo, lane_alpha(world, world.conductor.alpha_x, world.conductor.alpha_texture[0], row, shade.alpha[0], i),
+        lane_alpha(world, world.conductor.alpha_y, world.conductor.alpha_texture[1], row, shade.alpha[1], i));
     VF f_cos[4], pdf, u, v;
     if (work.weigh_light) {
       eval_conductor(lobe, optics, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);

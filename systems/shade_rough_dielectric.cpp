@@ -30,8 +30,10 @@ void shade_rough_dielectric_kernel(const World& world, const ShadeWork& work, Sh
     MediaCrossing crossing;
     const DielectricOptics optics = dielectric_optics(world, shade, i, row, crossing);
     const Frame frame = boundary_frame(world, shade, i);
-    const GgxLobe lobe = make_ggx_lobe(to_local(frame, load(shade.wo, i)), gather(world.dielectric.alpha_x.data(), row),
-                                       gather(world.dielectric.alpha_y.data(), row));
+    const GgxLobe lobe = make_ggx_lobe(
+        to_local(frame, load(shade.wo, i)),
+        lane_alpha(world, world.dielectric.alpha_x, world.dielectric.alpha_texture[0], row, shade.alpha[0], i),
+        lane_alpha(world, world.dielectric.alpha_y, world.dielectric.alpha_texture[1], row, shade.alpha[1], i));
     VF f_cos[4], pdf[4], u, v;
     if (work.weigh_light) {
       eval_rough_dielectric(lobe, optics, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr uint32_t chunk = 64;
 
-void start_ray(const ShadowStream& shadow, uint32_t i, RTCRay& ray) {
+void start_ray(const World& world, const ShadowStream& shadow, uint32_t i, RTCRay& ray) {
   ray.org_x = shadow.origin[0][i];
   ray.org_y = shadow.origin[1][i];
   ray.org_z = shadow.origin[2][i];
@@ -16,10 +16,11 @@ void start_ray(const ShadowStream& shadow, uint32_t i, RTCRay& ray) {
   ray.dir_x = shadow.direction[0][i];
   ray.dir_y = shadow.direction[1][i];
   ray.dir_z = shadow.direction[2][i];
-  ray.time = 0;
+  ray.time = world.has_motion ? shadow.time[i] : 0;
   ray.tfar = shadow.t_far[i];
   ray.mask = visible_to_shadows;
   ray.flags = 0;
+  ray.id = i;
 }
 
 void add_contribution(const ShadowStream& shadow, uint32_t i, Slots& slots) {
@@ -31,14 +32,13 @@ void add_contribution(const ShadowStream& shadow, uint32_t i, Slots& slots) {
 template <class Done>
 void test_occlusion(const World& world, const ShadowStream& shadow, double* embree_seconds, const Done& done) {
   using Clock = std::chrono::steady_clock;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  RayContext context(shadow.origin, shadow.direction, world.has_motion ? shadow.time : nullptr);
   RTCRay rays[chunk];
   for (uint32_t begin = 0; begin < shadow.size; begin += chunk) {
     const uint32_t count = std::min(chunk, shadow.size - begin);
-    for (uint32_t k = 0; k < count; ++k) start_ray(shadow, begin + k, rays[k]);
+    for (uint32_t k = 0; k < count; ++k) start_ray(world, shadow, begin + k, rays[k]);
     const Clock::time_point start = Clock::now();
-    for (uint32_t k = 0; k < count; ++k) rtcOccluded1(world.accelerator->root, &context, &rays[k]);
+    for (uint32_t k = 0; k < count; ++k) rtcOccluded1(world.accelerator->root, &context.embree, &rays[k]);
     *embree_seconds += std::chrono::duration<double>(Clock::now() - start).count();
     for (uint32_t k = 0; k < count; ++k) done(begin + k, rays[k].tfar < 0);  // Embree's word for occluded
   }

@@ -4,6 +4,8 @@
 // Highway's headers come after foreach_target.
 #include "engine/simd/math-inl.h"
 #include "systems/lanes-inl.h"
+#include "systems/placement-inl.h"
+#include "systems/surface_slopes-inl.h"
 #include "systems/systems.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -14,35 +16,11 @@ HWY_INLINE Vec3 abs(const Vec3& v) { return {hn::Abs(v.x), hn::Abs(v.y), hn::Abs
 HWY_INLINE Vec3 max(const Vec3& a, const Vec3& b) { return {hn::Max(a.x, b.x), hn::Max(a.y, b.y), hn::Max(a.z, b.z)}; }
 HWY_INLINE VF largest(const Vec3& v) { return hn::Max(hn::Max(v.x, v.y), v.z); }
 
-// Rows `first` .. of a 3x4 matrix in each lane's placement.
-struct Matrix {
-  Vec3 row[3];
-  Vec3 translation;
-};
-HWY_INLINE Matrix gather_matrix(const float* matrices, VI placement) {
-  const VI base = hn::ShiftLeft<5>(placement);
-  Matrix m;
-  VF t[3];
-  for (int r = 0; r < 3; ++r) {
-    m.row[r] = gather_vec3(matrices + 4 * r, base);
-    t[r] = gather(matrices + 4 * r + 3, base);
-  }
-  m.translation = {t[0], t[1], t[2]};
-  return m;
-}
-HWY_INLINE Vec3 transform_vector(const Matrix& m, const Vec3& v) {
-  return {dot(m.row[0], v), dot(m.row[1], v), dot(m.row[2], v)};
-}
-HWY_INLINE Vec3 transform_point(const Matrix& m, const Vec3& p) { return transform_vector(m, p) + m.translation; }
-// By the transpose: normals go to the world by the inverse's.
-HWY_INLINE Vec3 transform_normal(const Matrix& inverse, const Vec3& n) {
-  return mul_add(inverse.row[0], n.x, mul_add(inverse.row[1], n.y, inverse.row[2] * n.z));
-}
-
 struct Surface {
   Vec3 position, normal, shading_normal, tangent;
   VF u, v;
   VF offset;
+  SurfaceSlopes slopes;  // where the world has bumps
 };
 
 // Unit roundoff of float.
@@ -54,7 +32,7 @@ constexpr float eps = 5.9604645e-8f;
 // How far a new ray must start away so that Embree's own rounding cannot find this triangle again: the position is a
 // sum of products b_j v_j, each rounded (a few eps of |b_j v_j| along the normal), and Embree evaluates the plane at
 // the new origin with a few eps of the distance to its vertices, more for slivers, whose normal is less certain.
-HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, const Vec3& direction, VI object,
+HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, const Vec3& direction, VF time, VI object,
                                     VU primitive, MF live) {
   const FloatTag d;
   const VF zero = hn::Zero(d), one = splat(1.0f);
@@ -71,16 +49,14 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
     n[k] = gather_vec3(world.normals.data(), at);
   }
   VF side = one;
-  Matrix inverse;
+  ObjectToWorld place;
   MF placed = hn::Lt(one, zero);
   if (world.has_instances) {
     const VI placement = as_index(gather(world.objects.placement.data(), object));
-    const float* matrices = world.placements[0].to_world;
     placed = hn::RebindMask(d, hn::Ne(placement, hn::Zero(IntTag())));
-    const Matrix m = gather_matrix(matrices, placement);
-    inverse = gather_matrix(world.placements[0].to_object, placement);
+    place = object_to_world(world, object, placement, time);
     side = hn::IfThenElse(placed, gather(&world.placements[0].normal_sign, hn::ShiftLeft<5>(placement)), one);
-    for (int k = 0; k < 3; ++k) p[k] = if_then_else(placed, transform_point(m, p[k]), p[k]);
+    for (int k = 0; k < 3; ++k) p[k] = if_then_else(placed, transform_point(place.matrix, p[k]), p[k]);
   }
   const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0], s = origin - p[0];
   const Vec3 h = cross(direction, e2), q = cross(s, e1);
@@ -102,7 +78,7 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
   const VF inverse_length = safe_reciprocal(hn::Sqrt(dot(crossed, crossed)));
   surface.normal = crossed * hn::Mul(inverse_length, side);
   Vec3 shading = mul_add(n[0], b0, mul_add(n[1], b1, n[2] * b2));
-  if (world.has_instances) shading = if_then_else(placed, transform_normal(inverse, shading), shading);
+  if (world.has_instances) shading = if_then_else(placed, transform_normal(place.inverse, shading), shading);
   const VF shading_length2 = dot(shading, shading);
   const MF smooth = hn::Gt(shading_length2, splat(1e-20f));
   shading =
@@ -116,8 +92,14 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
   // Far from the origin Embree's difference of two coordinates rounds by their size.
   const Vec3 reach = max(max(abs(p[0]), abs(p[1])), abs(p[2]));
   surface.offset = hn::MulAdd(splat(2 * eps), dot(abs(surface.normal), reach), surface.offset);
+  // Embree interpolates a moving object's matrix itself, and inverts it, in single precision.
+  if (world.has_instances && world.has_motion) {
+    const Vec3 extent = reach + abs(place.matrix.translation);
+    surface.offset =
+        hn::IfThenElse(place.moves, hn::MulAdd(splat(16 * eps), largest(extent), surface.offset), surface.offset);
+  }
 
-  if (world.needs_tangents || world.has_textures()) {
+  if (world.needs_tangents || world.needs_uvs()) {
     VF u[3], v[3];
     for (int k = 0; k < 3; ++k) {
       const VI at = hn::Add(vertex[k], vertex[k]);
@@ -134,6 +116,11 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
     const VF uv_area = hn::MulSub(du1, dv2, hn::Mul(dv1, du2));
     const Vec3 along_u = (e1 * dv2 - e2 * dv1) * hn::CopySign(one, uv_area);
     surface.tangent = if_then_else(hn::Eq(uv_area, zero), make_frame(shading).s, along_u);
+    if (world.has_bumps) {
+      if (world.has_instances)
+        for (Vec3& normal : n) normal = if_then_else(placed, transform_normal(place.inverse, normal), normal);
+      surface.slopes = triangle_slopes({du1, dv1, du2, dv2}, e1, e2, n, smooth, shading);
+    }
   }
   return surface;
 }
@@ -151,15 +138,14 @@ HWY_INLINE void quadric_uv(const Vec3& local, VF radius, VF inner_radius, MF sph
 }
 
 // The distance comes from our own double-precision callback; the point is put back onto the quadric.
-HWY_INLINE Surface quadric_surface(const World& world, const Vec3& origin, const Vec3& direction, VI object,
+HWY_INLINE Surface quadric_surface(const World& world, const Vec3& origin, const Vec3& direction, VF time, VI object,
                                    VF distance) {
   const FloatTag d;
   const VF zero = hn::Zero(d), one = splat(1.0f);
   const VI placement = as_index(gather(world.objects.placement.data(), object));
   const VI base = hn::ShiftLeft<5>(placement);
   const Placement& first = world.placements[0];
-  const Matrix m = gather_matrix(first.to_world, placement);
-  const Matrix inverse = gather_matrix(first.to_object, placement);
+  const auto [m, inverse, moves] = object_to_world(world, object, placement, time);
   const VF radius = gather(&first.radius, base);
   const VU kind = gather(world.objects.kind.data(), object);
   const MF sphere = float_mask(hn::Eq(kind, splat_u(static_cast<uint32_t>(ShapeKind::sphere))));
@@ -170,17 +156,27 @@ HWY_INLINE Surface quadric_surface(const World& world, const Vec3& origin, const
   const Vec3 linear = transform_vector(m, local);
   surface.position = linear + m.translation;
   const Vec3 up = {zero, zero, one};
-  const Vec3 normal = normalize(transform_normal(inverse, if_then_else(sphere, local, up)));
-  surface.normal = normal * gather(&first.normal_sign, base);
+  const Vec3 normal = transform_normal(inverse, if_then_else(sphere, local, up));
+  const VF side = gather(&first.normal_sign, base);
+  surface.normal = normalize(normal) * side;
   surface.shading_normal = surface.normal;
   // On a sphere a step along the tangent plane leaves the surface, so distances are uncertain by their own rounding
   // only; the callback works in double.
   const Vec3 extent = {dot(abs(m.row[0]), abs(local)), dot(abs(m.row[1]), abs(local)), dot(abs(m.row[2]), abs(local))};
   surface.offset = hn::Mul(splat(16 * eps), largest(extent + abs(m.translation)));
+  if (world.has_motion) surface.offset = hn::IfThenElse(moves, hn::Add(surface.offset, surface.offset), surface.offset);
   const Vec3 along = {hn::Neg(local.y), local.x, zero};
   const MF pole = hn::Eq(hn::Add(hn::Abs(local.x), hn::Abs(local.y)), zero);
   surface.tangent = transform_vector(m, if_then_else(pole, Vec3{one, zero, zero}, along));
-  if (world.has_textures()) quadric_uv(local, radius, gather(&first.inner_radius, base), sphere, surface);
+  const VF inner_radius = gather(&first.inner_radius, base);
+  if (world.needs_uvs()) quadric_uv(local, radius, inner_radius, sphere, surface);
+  if (world.has_bumps) {
+    // The normal of a sphere turns as the point does.
+    const VF bend = hn::IfThenElseZero(sphere, hn::Div(side, hn::Sqrt(dot(normal, normal))));
+    const Slopes p = quadric_slopes(local, radius, inner_radius, sphere);
+    surface.slopes = {{transform_vector(m, p.along_u), transform_vector(m, p.along_v)},
+                      {transform_normal(inverse, p.along_u) * bend, transform_normal(inverse, p.along_v) * bend}};
+  }
   return surface;
 }
 
@@ -223,6 +219,7 @@ HWY_INLINE void carry(const PathStream& paths, VI path, MF live, ShadeStream& sh
   store(gather(paths.pixel_seed, path), shade.pixel_seed, i);
   store(gather(paths.index, path), shade.index, i);
   store(hn::IfThenElse(uint_mask(live), gather(paths.slot, path), splat_u(dead_lane)), shade.slot, i);
+  if (shade.carries_time) store(gather(paths.time, path), shade.time, i);
   if (shade.carries_media)
     for (size_t k = 0; k < 2; ++k) store(gather(paths.media[k], path), shade.media[k], i);
   if (shade.carries_shares)
@@ -236,6 +233,7 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
   shade.carries_volumes = world.has_volumes;
   shade.carries_shares = world.shares_paths;
   const Group& phase = shade.groups[static_cast<size_t>(ShadeKind::phase)];
+  shade.carries_time = world.has_motion;
   const uint32_t miss_begin = shade.groups[static_cast<size_t>(ShadeKind::miss)].begin;
   for (size_t i = 0; i < shade.size; i += step) {
     const VU ordered = load(order, i);
@@ -244,7 +242,10 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     // Dead lanes look at the batch's first path and are forgotten.
     const VI path = as_index(hn::IfThenElseZero(live_u, ordered));
     carry(paths, path, live, shade, i);
-    if (i >= miss_begin) continue;
+    if (i >= miss_begin) {
+      if (world.has_portals) store(gather(paths.origin, path), shade.position, i);
+      continue;
+    }
     if (i >= phase.begin && i < phase.padded_end()) {
       store_scattering(paths, hits, path, shade, i);
       continue;
@@ -253,6 +254,7 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     const VI object = as_index(hn::IfThenElseZero(hn::And(live_u, hn::Ne(met, splat_u(no_index))), met));
     const VU primitive = gather(hits.primitive, path);
     const Vec3 origin = gather(paths.origin, path), direction = gather(paths.direction, path);
+    const VF time = world.has_motion ? gather(paths.time, path) : hn::Zero(FloatTag());
     const VU kind = gather(world.objects.kind.data(), object);
     const MF quadric = hn::And(live, float_mask(hn::Ne(kind, splat_u(static_cast<uint32_t>(ShapeKind::mesh)))));
     const MF triangle = hn::AndNot(quadric, live);
@@ -261,12 +263,12 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
         world.has_quadrics && (!hn::AllFalse(FloatTag(), quadric) || hn::AllFalse(FloatTag(), triangle));
     Surface s;
     if (!any_quadric) {
-      s = triangle_surface(world, origin, direction, object, primitive, triangle);
+      s = triangle_surface(world, origin, direction, time, object, primitive, triangle);
     } else {
-      const Surface q = quadric_surface(world, origin, direction, object, gather(hits.distance, path));
+      const Surface q = quadric_surface(world, origin, direction, time, object, gather(hits.distance, path));
       s = q;
       if (!hn::AllFalse(FloatTag(), triangle))
-        s = triangle_surface(world, origin, direction, object, primitive, triangle);
+        s = triangle_surface(world, origin, direction, time, object, primitive, triangle);
       s.position = if_then_else(quadric, q.position, s.position);
       s.normal = if_then_else(quadric, q.normal, s.normal);
       s.shading_normal = if_then_else(quadric, q.shading_normal, s.shading_normal);
@@ -274,25 +276,47 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
       s.u = hn::IfThenElse(quadric, q.u, s.u);
       s.v = hn::IfThenElse(quadric, q.v, s.v);
       s.offset = hn::IfThenElse(quadric, q.offset, s.offset);
+      s.slopes = if_then_else(quadric, q.slopes, s.slopes);
     }
     store(s.position, shade.position, i);
     store(s.normal, shade.normal, i);
     store(s.shading_normal, shade.shading_normal, i);
     if (world.needs_tangents) store(s.tangent, shade.tangent, i);
-    if (world.has_textures()) {
+    if (world.needs_uvs()) {
       store(s.u, shade.uv[0], i);
       store(s.v, shade.uv[1], i);
+    }
+    if (world.has_bumps) {
+      store(s.slopes.position.along_u, shade.dp_du, i);
+      store(s.slopes.position.along_v, shade.dp_dv, i);
+      store(s.slopes.normal.along_u, shade.dn_du, i);
+      store(s.slopes.normal.along_v, shade.dn_dv, i);
     }
     store(s.offset, shade.offset, i);
     const Vec3 travelled = s.position - origin;
     store(hn::Sqrt(dot(travelled, travelled)), shade.distance, i);
-    store(gather(world.objects.material.data(), object), shade.material, i);
+    store(gather(hits.material, path), shade.material, i);
     if (shade.carries_volumes) store_volumes(world, paths, path, object, shade, i);
     const VU first_light = gather(world.objects.first_light.data(), object);
     const auto emits = hn::And(live_u, hn::Ne(first_light, splat_u(no_index)));
     const VU light = hn::Add(first_light, hn::IfThenZeroElse(uint_mask(quadric), primitive));
     store(hn::IfThenElse(emits, light, splat_u(no_index)), shade.light, i);
   }
+}
+
+SurfacePoint surface_point_kernel(const World& world, const RayHit& hit) {
+  const Vec3 origin = {splat(hit.origin[0]), splat(hit.origin[1]), splat(hit.origin[2])};
+  const Vec3 direction = {splat(hit.direction[0]), splat(hit.direction[1]), splat(hit.direction[2])};
+  const VI object = hn::Set(IntTag(), static_cast<int32_t>(hit.object));
+  const bool is_mesh = world.objects.kind[hit.object] == static_cast<uint32_t>(ShapeKind::mesh);
+  const MF all = hn::Eq(origin.x, origin.x);
+  const VF time = splat(hit.time);
+  const Surface s = is_mesh ? triangle_surface(world, origin, direction, time, object, splat_u(hit.primitive), all)
+                            : quadric_surface(world, origin, direction, time, object, splat(hit.distance));
+  const auto first = [](VF v) { return hn::GetLane(v); };
+  return {{first(s.u), first(s.v)},
+          {first(s.position.x), first(s.position.y), first(s.position.z)},
+          {first(s.normal.x), first(s.normal.y), first(s.normal.z)}};
 }
 
 }  // namespace
@@ -303,10 +327,15 @@ HWY_AFTER_NAMESPACE();
 namespace metamer {
 
 HWY_EXPORT(surface_kernel);
+HWY_EXPORT(surface_point_kernel);
 
 void surface(const World& world, const PathStream& paths, const HitStream& hits, const uint32_t* order,
              ShadeStream& shade) {
   HWY_DYNAMIC_DISPATCH(surface_kernel)(world, paths, hits, order, shade);
+}
+
+SurfacePoint surface_point(const World& world, const RayHit& hit) {
+  return HWY_DYNAMIC_DISPATCH(surface_point_kernel)(world, hit);
 }
 
 }  // namespace metamer

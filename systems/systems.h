@@ -66,12 +66,32 @@ inline constexpr uint32_t most_interfaces = 1024;
 uint32_t volumes(const World& world, uint32_t depth, PathStream& paths, HitStream& hits, uint32_t* order,
                  ShadeStream& shade, Slots& slots, double* embree_seconds);
 
-// Sorts the hits by kind: order[lane] is the path, dead_lane in the padding between groups.
-void sort_hits(const World& world, uint32_t size, const HitStream& hits, uint32_t* order, Groups& groups);
+// Chooses the material of hits on mixed ones and sorts by kind: order[lane] is the path, dead_lane in the padding
+// between groups. Writes the hits' material.
+void sort_hits(const World& world, uint32_t depth, const PathStream& paths, HitStream& hits, uint32_t* order,
+               Groups& groups);
 
 // Position, normals and how far new rays must keep off the surface; carries the paths' columns along in sorted order.
 void surface(const World& world, const PathStream& paths, const HitStream& hits, const uint32_t* order,
              ShadeStream& shade);
+
+// A ray and what it met: enough to compute the point again.
+struct RayHit {
+  float origin[3] = {}, direction[3] = {};
+  uint32_t object = 0, primitive = 0;
+  float distance = 0;  // of quadrics
+  float time = 0;      // where the world has motion
+};
+// What textures may ask about it.
+struct SurfacePoint {
+  float uv[2], position[3], normal[3];
+};
+SurfacePoint surface_point(const World& world, const RayHit& hit);
+// The value there of a program for numbers: alpha, or the amount of a mixture. The same whatever else is computed.
+float number_at_hit(const World& world, uint32_t program, const RayHit& hit);
+
+// Bends shading normals (and tangents) by displacements and normal maps. Nothing where the world has no bumps.
+void bump(const World& world, ShadeStream& shade);
 
 // Values of materials that vary over their surface, computed in order of the textures. Nothing without textures.
 void textures(const World& world, uint32_t depth, ShadeStream& shade);
@@ -97,6 +117,7 @@ struct ShadeWork {
   bool draw_mirror = true;  // the next direction may be a smooth coat's mirror image; else it comes from the body alone
 };
 void shade_diffuse(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
+void shade_diffuse_transmission(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_smooth_coated(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough_coated(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);

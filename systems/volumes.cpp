@@ -198,6 +198,7 @@ uint32_t transmit(const World& world, ShadowStream& shadow, Batch& crossings, do
   copy(shadow.lambda_nm, paths.lambda_nm);
   copy(shadow.contribution, paths.throughput);
   std::copy_n(shadow.volume, shadow.size, paths.volume);
+  if (world.has_motion) std::copy_n(shadow.time, shadow.size, paths.time);
   paths.size = shadow.size;
   for (uint32_t i = 0; i < shadow.size; ++i) {
     hits.passed[i] = 0;

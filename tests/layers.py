@@ -24,7 +24,7 @@ rooms = {
 # Library, its headers, the files of engine, systems and scenes that may include them, and at most how many do.
 # Benchmarks and tests may look behind the wrappers.
 libraries = [
-    ("Embree", r"embree\d/", ["systems/build_*", "systems/intersect*", "systems/shadow*", "systems/accelerator.h"], None),
+    ("Embree", r"embree\d/", ["systems/build_*", "systems/intersect*", "systems/shadow*", "systems/accelerator.h", "systems/alpha_masks.cpp"], None),
     ("OpenVDB", r"(openvdb|nanovdb)/", ["systems/media*"], None),
     ("OpenImageIO", r"OpenImageIO/", ["engine/files/*", "*/textures*", "*/images*", "*/image_*"], None),
     ("OpenColorIO", r"OpenColorIO/", ["systems/ocio_*"], 1),
@@ -32,6 +32,8 @@ libraries = [
     ("oneTBB", r"(oneapi/)?tbb/", ["engine/schedule/*"], None),
     ("jsoncpp", r"json/", ["scenes/*"], None),
     ("CLI11", r"CLI/", ["scenes/program/*"], None),
+    ("zlib", r"zlib\.h", ["scenes/*"], 1),
+    ("OpenSubdiv", r"opensubdiv/", ["scenes/*"], 1),
     ("tinyobjloader", r"tiny_obj_loader\.h", ["scenes/*"], 1),
     ("GoogleTest", r"g(test|mock)/", [], None),
     ("Google Benchmark", r"benchmark/", [], None),

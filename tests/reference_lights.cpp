@@ -29,18 +29,22 @@ glm::dvec2 equal_area_uv(const Vector& d) {
 
 double sigmoid_at(const float* c, double lambda_nm) { return sigmoid_polynomial({c[0], c[1], c[2]}, lambda_nm); }
 
-// equal_area: the texel; latitude_longitude: linear between the centres of four, around the circle.
-Spectrum4 environment_image(const Environment& e, const glm::dvec2& uv, const Spectrum4& lambda_nm) {
+// The texel, or linear between the centres of four, around the circle or clamped.
+Spectrum4 image_at(const World& world, uint32_t row, const glm::dvec2& uv, const Spectrum4& lambda_nm) {
+  const LightImage& image = world.light_images.rows[row];
   Spectrum4 sum{};
   const auto add = [&](double x, double y, double weight) {
-    const int width = static_cast<int>(e.width), height = static_cast<int>(e.height);
-    const int column = (static_cast<int>(std::floor(x)) + width) % width;
-    const int row = std::clamp(static_cast<int>(std::floor(y)), 0, height - 1);
-    const float* texel = e.texels.data() + 4 * (row * width + column);
+    const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
+    int column = static_cast<int>(std::floor(x));
+    const bool around = image.lookup == static_cast<uint32_t>(ImageLookup::linear_around);
+    column = around ? (column + width) % width : std::clamp(column, 0, width - 1);
+    const int line = std::clamp(static_cast<int>(std::floor(y)), 0, height - 1);
+    const size_t at = image.first_texel + static_cast<size_t>(line) * image.width + static_cast<size_t>(column);
+    const float* texel = world.light_images.texels.data() + 4 * at;
     for (size_t j = 0; j < 4; ++j) sum[j] += weight * texel[3] * sigmoid_at(texel, lambda_nm[j]);
   };
-  const double x = uv.x * e.width, y = uv.y * e.height;
-  if (e.mapping == ImageMapping::equal_area) {
+  const double x = uv.x * image.width, y = uv.y * image.height;
+  if (image.lookup == static_cast<uint32_t>(ImageLookup::nearest)) {
     add(x, y, 1);
     return sum;
   }
@@ -50,6 +54,26 @@ Spectrum4 environment_image(const Environment& e, const glm::dvec2& uv, const Sp
   add(x - 0.5, y + 0.5, (1 - right) * lower);
   add(x + 0.5, y + 0.5, right * lower);
   return sum;
+}
+
+glm::dvec2 sphere_uv(ImageMapping mapping, const Vector& d) {
+  if (mapping == ImageMapping::equal_area) return equal_area_uv(d);
+  const double turn = std::atan2(d.y, d.x) / (2 * pi);
+  return {turn < 0 ? turn + 1 : turn, std::acos(std::clamp(d.z, -1.0, 1.0)) / pi};
+}
+
+Vector times_rows(const float* rows, const Vector& v) {
+  return {glm::dot(read3(rows), v), glm::dot(read3(rows + 3), v), glm::dot(read3(rows + 6), v)};
+}
+
+// Whether the ray passes through the rectangle from the side its light goes to.
+bool passes(const Portal& portal, const Vector& origin, const Vector& direction) {
+  const Vector x = read3(portal.frame), y = read3(portal.frame + 3), z = read3(portal.frame + 6);
+  const double ahead = glm::dot(read3(portal.corner) - origin, z), along = glm::dot(direction, z);
+  if (!(ahead > 0) || !(along > 0)) return false;
+  const Vector at = origin + direction * (ahead / along) - read3(portal.corner);
+  const double across = glm::dot(at, x), up = glm::dot(at, y);
+  return across >= 0 && across <= double{portal.width} && up >= 0 && up <= double{portal.height};
 }
 
 }  // namespace
@@ -87,29 +111,42 @@ Spectrum4 reference_disks(const World& world, const Vector& direction, const Spe
   return values;
 }
 
-Spectrum4 reference_environment(const World& world, const Vector& direction, const Spectrum4& lambda_nm) {
-  const Environment& e = world.environment;
-  if (e.light == no_index) return {};
-  Spectrum4 values = reference_radiance(world, world.lights[e.light], lambda_nm);
-  if (e.width == 0) return values;
-  Vector d;
-  for (int i = 0; i < 3; ++i) d[i] = glm::dot(read3(e.to_local + 3 * i), direction);
-  d = glm::normalize(d);
-  double turn = std::atan2(d.y, d.x) / (2 * pi);
-  if (turn < 0) turn += 1;
-  const glm::dvec2 uv = e.mapping == ImageMapping::equal_area
-                            ? equal_area_uv(d)
-                            : glm::dvec2(turn, std::acos(std::clamp(d.z, -1.0, 1.0)) / pi);
-  const Spectrum4 factor = environment_image(e, uv, lambda_nm);
-  for (size_t j = 0; j < 4; ++j) values[j] *= factor[j];
-  return values;
+Spectrum4 reference_environment(const World& world, const Vector& origin, const Vector& direction,
+                                const Spectrum4& lambda_nm) {
+  Spectrum4 sum{};
+  for (const Environment& e : world.environments) {
+    if (e.has_portal() && !passes(e.portal, origin, direction)) continue;
+    const Spectrum4 plain = reference_radiance(world, world.lights[e.light], lambda_nm);
+    Spectrum4 factor{1, 1, 1, 1};
+    if (e.image != no_index) {
+      const Vector d = glm::normalize(times_rows(e.to_local, direction));
+      factor = image_at(world, e.image, sphere_uv(e.mapping, d), lambda_nm);
+    }
+    for (size_t j = 0; j < 4; ++j) sum[j] += plain[j] * factor[j];
+  }
+  return sum;
 }
+
+Spectrum4 reference_light_image(const World& world, uint32_t light, const Vector& direction,
+                                const Spectrum4& lambda_nm) {
+  const LightRow& row = world.lights[light];
+  const auto shape = static_cast<LightShape>(row.shape);
+  const Vector local = times_rows(row.inverse, direction);
+  if (shape == LightShape::goniometric)
+    return image_at(world, world.image_of_light[light],
+                    sphere_uv(static_cast<ImageMapping>(row.mapping), glm::normalize(local)), lambda_nm);
+  if (shape != LightShape::projection) return {1, 1, 1, 1};
+  const double right = local.x / (local.z * row.axes[0]), up = local.y / (local.z * row.axes[1]);
+  if (!(local.z > 0) || std::abs(right) > 1 || std::abs(up) > 1) return {};
+  return image_at(world, world.image_of_light[light], {(1 + right) / 2, (1 - up) / 2}, lambda_nm);
+}
+
 ReferenceLightPoint reference_light_point(const LightRow& row, const Vector& from, ReferenceRandom& random) {
   ReferenceLightPoint sample;
   const Vector p = read3(row.p), a = read3(row.axes), b = read3(row.axes + 3), c = read3(row.axes + 6);
   const auto shape = static_cast<LightShape>(row.shape);
   if (shape == LightShape::directional) return {glm::normalize(p), infinity, 1};
-  if (shape == LightShape::point) {
+  if (shape == LightShape::point || shape == LightShape::goniometric || shape == LightShape::projection) {
     const double d = glm::length(p - from);
     return {(p - from) / d, d, 1 / (d * d)};
   }

@@ -27,8 +27,12 @@ Spectrum4 reference_radiance(const World& world, const LightRow& row, const Spec
 Spectrum4 reference_emission(const World& world, const LightRow& row, double cos_light, const Spectrum4& lambda_nm);
 // From the discs at infinity, along a direction away from the scene.
 Spectrum4 reference_disks(const World& world, const Vector& direction, const Spectrum4& lambda_nm);
-// From the environment likewise.
-Spectrum4 reference_environment(const World& world, const Vector& direction, const Spectrum4& lambda_nm);
+// From all environments likewise, as far as they are seen from `origin`.
+Spectrum4 reference_environment(const World& world, const Vector& origin, const Vector& direction,
+                                const Spectrum4& lambda_nm);
+// The image of a goniometric light or a projection, as it is sent along a direction; 1 of other lights.
+Spectrum4 reference_light_image(const World& world, uint32_t light, const Vector& direction,
+                                const Spectrum4& lambda_nm);
 
 struct ReferenceLightPoint {
   Vector direction;
@@ -36,9 +40,9 @@ struct ReferenceLightPoint {
   double factor = 0;  // on the light's spectrum: what of it arrives, divided by the density
 };
 
-// A point of a light that is not the environment, uniformly by area (of the unit sphere it is the image of).
+// A point of a light that is no environment, uniformly by area (of the unit sphere it is the image of).
 ReferenceLightPoint reference_light_point(const LightRow& row, const Vector& from, ReferenceRandom& random);
-// Uniform over all directions, for the environment.
+// Uniform over all directions, for environments.
 Vector reference_direction(ReferenceRandom& random);
 
 }  // namespace metamer

@@ -48,11 +48,14 @@ reference::CoatOptics reference_coat(const World& world, ShadeKind kind, uint32_
   const CoatedColumns& table = kind == ShadeKind::smooth_coated ? world.smooth_coated : world.rough_coated;
   return {reference_spectrum(world, table.reflectance[row], lambda_nm),
           reference_spectrum(world, table.eta[row], lambda_nm),
-          double{table.alpha[row]},
+          double{table.alpha_x[row]},
           table.schlick[row] != 0,
           table.albedos.data(),
           {table.first_row[row], table.row_stride[row], table.last_pair[row], table.eta_least[row],
-           table.rows_per_eta[row]}};
+           table.rows_per_eta[row]},
+          double{table.alpha_y[row]},
+          double{table.thickness[row]},
+          double{table.hits[row]}};
 }
 
 }  // namespace metamer

@@ -13,6 +13,7 @@
 #include "tests/reference_lights.h"
 #include "tests/reference_media.h"
 #include "tests/reference_optics.h"
+#include "tests/reference_surfaces.h"
 
 namespace metamer {
 namespace {
@@ -28,7 +29,7 @@ struct Tracer {
   ReferenceRandom random;
 
   bool is_path;
-  std::vector<uint32_t> summed, chosen;  // lights without the environment: all of these, and one of those
+  std::vector<uint32_t> summed, chosen;  // lights that are no environments: all of these, and one of those
 
   Tracer(const World& frozen, uint32_t seed)
       : world(frozen), scene(frozen), random(seed), is_path(frozen.settings.integrator == Integrator::path) {
@@ -46,7 +47,7 @@ struct Tracer {
     const ReferenceHit hit = scene.intersect(origin, direction, mask);
     if (media.volume != 0)
       return through_volume(hit, origin, direction, media, lambda_nm, together, events, sees_lights, sees_sky, mask);
-    return arriving(hit, direction, media, lambda_nm, together, events, sees_lights, sees_sky, mask);
+    return arriving(hit, origin, direction, media, lambda_nm, together, events, sees_lights, sees_sky, mask);
   }
 
   // A volume before what the ray meets. Where it scatters each wavelength goes its own way from here on, by its own
@@ -57,7 +58,7 @@ struct Tracer {
     const double distance = hit.object == no_index ? infinity : hit.t;
     Spectrum4 result{};
     if (!is_path || world.volumes.scatters[media.volume] == 0) {
-      result = arriving(hit, direction, media, lambda_nm, together, events, sees_lights, sees_sky, mask);
+      result = arriving(hit, origin, direction, media, lambda_nm, together, events, sees_lights, sees_sky, mask);
       attenuate_and_glow(world, media.volume, lambda_nm, distance, result);
       return result;
     }
@@ -71,7 +72,7 @@ struct Tracer {
       const ReferenceVolume volume = volume_at(world, media.volume, lambda_nm[j]);
       const double t = volume.extinction() > 0 ? -std::log(1 - random()) / volume.extinction() : infinity;
       if (!(t < distance)) {
-        result[j] = arriving(hit, direction, media, alone, false, events, sees_lights, sees_sky, mask)[0];
+        result[j] = arriving(hit, origin, direction, media, alone, false, events, sees_lights, sees_sky, mask)[0];
         continue;
       }
       result[j] = volume.absorption / volume.extinction() * volume.glow;
@@ -100,10 +101,11 @@ struct Tracer {
   }
 
   // What comes from what the ray meets.
-  Spectrum4 arriving(const ReferenceHit& hit, const Vector& direction, ReferenceMedia media, const Spectrum4& lambda_nm,
-                     bool together, uint32_t events, bool sees_lights, bool sees_sky, uint32_t mask) {
+  Spectrum4 arriving(const ReferenceHit& hit, const Vector& origin, const Vector& direction, ReferenceMedia media,
+                     const Spectrum4& lambda_nm, bool together, uint32_t events, bool sees_lights, bool sees_sky,
+                     uint32_t mask) {
     if (hit.object == no_index) {
-      Spectrum4 sky = sees_sky ? reference_environment(world, direction, lambda_nm) : Spectrum4{};
+      Spectrum4 sky = sees_sky ? reference_environment(world, origin, direction, lambda_nm) : Spectrum4{};
       if (sees_lights) sky = plus(sky, reference_disks(world, direction, lambda_nm));
       attenuate(world, media, lambda_nm, infinity, sky);
       return sky;
@@ -129,36 +131,23 @@ struct Tracer {
 
   Spectrum4 scatter(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media,
                     const Spectrum4& lambda_nm, bool together, uint32_t events) {
-    const auto kind = static_cast<ShadeKind>(world.objects.shade_kind[hit.object]);
-    const uint32_t row = world.objects.material[hit.object];
+    const auto [kind, row] = reference_material(world, hit.object, [&] { return random(); });
     const ReferenceFrame frame = reference_frame(hit, direction);
     const Direction wo = frame.in(-direction);
     if (kind == ShadeKind::absorber) return {};
     if (kind == ShadeKind::dielectric || kind == ShadeKind::rough_dielectric)
-      return enter(hit, direction, media, lambda_nm, together, events);
+      return enter({kind, row}, hit, direction, media, lambda_nm, together, events);
     if (kind == ShadeKind::thin_dielectric) {
       const reference::ThinOptics optics = reference_thin(world, row, fills(world, media), lambda_nm);
       return branch(
           hit, frame, media, [&](double u) { return reference::sample_thin(wo, optics, u); }, lambda_nm, together,
           events);
     }
-    if (kind == ShadeKind::diffuse) {
-      const Spectrum4 albedo = reference_spectrum(world, world.diffuse.reflectance[row], lambda_nm);
-      const Spectrum4 lit = direct(hit, frame, media, lambda_nm,
-                                   [&](const Direction& wi) { return reference::eval_diffuse(wo, albedo, wi).f_cos; });
-      const double u = random(), v = random();
-      return plus(lit,
-                  go_on(hit, frame, media, reference::sample_diffuse(wo, albedo, u, v), lambda_nm, together, events));
-    }
-    if (kind == ShadeKind::rough) {
-      const reference::RoughOptics optics{reference_spectrum(world, world.rough.kd[row], lambda_nm),
-                                          reference_spectrum(world, world.rough.ks[row], lambda_nm),
-                                          world.rough.shininess[row], world.rough.normalized[row] != 0};
-      const Spectrum4 lit = direct(hit, frame, media, lambda_nm,
-                                   [&](const Direction& wi) { return reference::eval_rough(wo, optics, wi).f_cos; });
+    if (const auto surface = reference_surface(world, kind, row, wo, lambda_nm)) {
+      const Spectrum4 lit =
+          direct(hit, frame, media, lambda_nm, [&](const Direction& wi) { return surface->eval(wi).f_cos; });
       const double choice = random(), u = random(), v = random();
-      return plus(lit, go_on(hit, frame, media, reference::sample_rough(wo, optics, choice, u, v), lambda_nm, together,
-                             events));
+      return plus(lit, go_on(hit, frame, media, surface->sample(choice, u, v), lambda_nm, together, events));
     }
     if (kind == ShadeKind::smooth_coated || kind == ShadeKind::rough_coated)
       return coated(hit, frame, media, wo, reference_coat(world, kind, row, lambda_nm), lambda_nm, together, events);
@@ -180,10 +169,10 @@ struct Tracer {
   }
 
   // A boundary that light crosses, smooth or rough.
-  Spectrum4 enter(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media,
-                  const Spectrum4& lambda_nm, bool together, uint32_t events) {
+  Spectrum4 enter(const ReferenceMaterial& material, const ReferenceHit& hit, const Vector& direction,
+                  const ReferenceMedia& media, const Spectrum4& lambda_nm, bool together, uint32_t events) {
     const DielectricColumns& table = world.dielectric;
-    const uint32_t row = world.objects.material[hit.object], medium = table.medium[row];
+    const uint32_t row = material.row, medium = table.medium[row];
     const ReferenceMedia behind = crossed(world, media, hit, direction);
     const uint32_t before = fills(world, media), after = fills(world, behind);
     if (medium != 0 && before == after)  // it fills the space on neither side: nothing happens
@@ -199,7 +188,7 @@ struct Tracer {
       optics.opaque[j] = world.spectra.value(table.kappa[row], lambda_nm[j]) >= double{refracting_kappa};
     const ReferenceFrame frame = reference_frame(hit, direction);
     const Direction wo = frame.in(-direction);
-    if (static_cast<ShadeKind>(world.objects.shade_kind[hit.object]) == ShadeKind::dielectric)
+    if (material.kind == ShadeKind::dielectric)
       return branch(
           hit, frame, media, [&](double u) { return reference::sample_dielectric(wo, optics, u); }, lambda_nm, together,
           events);
@@ -270,7 +259,8 @@ struct Tracer {
         scene.intersect(hit.position, sample.direction, visible_to_shadows, far).object != no_index)
       return {};
     Spectrum4 result = reference_radiance(world, world.lights[light], lambda_nm);
-    for (size_t j = 0; j < 4; ++j) result[j] *= f_cos[j] * sample.factor * count;
+    const Spectrum4 image = reference_light_image(world, light, -sample.direction, lambda_nm);
+    for (size_t j = 0; j < 4; ++j) result[j] *= f_cos[j] * image[j] * sample.factor * count;
     through_media(next_media(media, hit, frame.came, sample.direction), hit.position, sample.direction, sample.distance,
                   lambda_nm, result);
     return result;
@@ -280,7 +270,7 @@ struct Tracer {
   Spectrum4 sky_through_everything(const ReferenceHit& hit, const ReferenceFrame& frame, const ReferenceMedia& media,
                                    const Spectrum4& lambda_nm, const Evaluate& evaluate) {
     const Vector direction = reference_direction(random);
-    Spectrum4 result = reference_environment(world, direction, lambda_nm);
+    Spectrum4 result = reference_environment(world, hit.position, direction, lambda_nm);
     const Spectrum4 f_cos = evaluate(frame.in(direction));
     for (size_t j = 0; j < 4; ++j) result[j] *= f_cos[j] * 4 * std::numbers::pi;
     through_media(next_media(media, hit, frame.came, direction), hit.position, direction, infinity, lambda_nm, result);

@@ -22,6 +22,16 @@ struct Transform {
   static constexpr auto fields = std::make_tuple(&Transform::row0, &Transform::row1, &Transform::row2);
 };
 
+// The entity moves: its Transform holds at `start_time`, this one at `end_time` (seconds, start before end). In between
+// the translation, the rotation and what is left of the matrix go their ways one by one (systems/build_motion.h);
+// before and after it stands still.
+struct Motion {
+  glm::vec4 row0{1, 0, 0, 0}, row1{0, 1, 0, 0}, row2{0, 0, 1, 0};
+  float start_time = 0, end_time = 1;
+  static constexpr auto fields =
+      std::make_tuple(&Motion::row0, &Motion::row1, &Motion::row2, &Motion::start_time, &Motion::end_time);
+};
+
 struct Parent {
   Entity entity;
   static constexpr auto fields = std::make_tuple(&Parent::entity);
@@ -38,13 +48,26 @@ struct Geometry {
   ShapeKind kind = ShapeKind::mesh;
   MeshId mesh = no_index;
   float radius = 1, inner_radius = 0, height = 0, width = 1, depth = 1;
-  uint32_t flip_normal = 0;  // 1: the side an area light emits to, and the normal, are the other one
+  uint32_t flip_normal = 0;            // 1: the side an area light emits to, and the normal, are the other one
+  TextureId alpha_texture = no_index;  // a number: the chance that a ray meets the surface at all; none: 1
   static constexpr auto fields =
       std::make_tuple(&Geometry::kind, &Geometry::mesh, &Geometry::radius, &Geometry::inner_radius, &Geometry::height,
-                      &Geometry::width, &Geometry::depth, &Geometry::flip_normal);
+                      &Geometry::width, &Geometry::depth, &Geometry::flip_normal, &Geometry::alpha_texture);
 };
 
-enum class MaterialKind : uint32_t { diffuse, conductor, dielectric, rough, coated, smooth, interface };
+enum class MaterialKind : uint32_t {
+  diffuse,
+  conductor,
+  dielectric,
+  rough,
+  coated,
+  smooth,
+  layered,
+  diffuse_transmission,
+  mix,
+  hair,
+  interface
+};
 enum class FresnelModel : uint32_t { exact, schlick };
 
 inline constexpr uint32_t largest_priority = 255;
@@ -52,16 +75,46 @@ inline constexpr uint32_t largest_priority = 255;
 // diffuse: `reflectance`. conductor: `eta`, `kappa`, GGX roughness. dielectric: `eta` inside against the outside,
 // `kappa` below refracting_kappa, GGX roughness. `alpha_x`, `alpha_y` are GGX slopes' widths (not remapped); below 1e-3
 // a mirror. smooth: `eta`, `kappa` of any size, on each wavelength a dielectric or a conductor as kappa decides.
+// `alpha_x_texture`, `alpha_y_texture`: numbers in the place of `alpha_x` and `alpha_y`, of a conductor or dielectric
+// that then is rough everywhere. A conductor's `reflectance_texture` stands for eta 1 and the kappa of that reflectance
+// along the normal. `displacement`: a number, metres along the normal, that bends the shading normal; so does
+// `normal_map`, whose red, green and blue are (1 + n) / 2 of a normal along dp/du, across it and along the normal.
 // `priority`: paths keep track of being inside (a dielectric with kappa and anything smooth has 1 at least); `eta` is
 // then against vacuum, and where solids overlap the one of the higher priority fills the space. `thin`: a slab of
 // `thickness` whose two faces are one surface; no inside. rough: diffuse `kd` plus Phong-Blinn `ks`, `shininess` (see
 // systems/bsdf/rough-inl.h); as taught, both in sr^-1 and without a bound, or `normalized`, both albedos.
 // coated: diffuse `reflectance` under a clear coat of index `eta` and one GGX width, alpha_x = alpha_y.
 // interface: nothing to see; only the media on its two sides differ.
+// layered: pbrt's coat (systems/bsdf/coat_layer.h): a surface of index `eta` and GGX roughness over a `layer` and a
+// `base`. diffuse_transmission: `reflectance` and `transmittance`, both lambertian. mix: of two other entities'
+// materials. hair: `eta` and what `hair` says.
+enum class LayerBase : uint32_t { diffuse, conductor };
+struct Layer {
+  LayerBase base = LayerBase::diffuse;       // diffuse: the material's `reflectance`; conductor:
+  SpectrumId base_eta = 0, base_kappa = 0;   // against vacuum
+  float base_alpha_x = 0, base_alpha_y = 0;  // GGX
+  float thickness = 0.01f;  // optical: exp(-thickness) is left of light that crosses it along the normal
+  SpectrumId albedo = 0;    // of what scatters in it, 0 to 1
+  float asymmetry = 0;      // mean cosine of that scattering, -1 to 1
+  uint32_t max_depth = 10;  // scatterings inside of the coat, one at a boundary included
+  uint32_t walks = 1;       // averaged where the sum over ways through the layer is not closed
+};
+struct Mix {
+  Entity first, second;
+  float amount = 0.5f;                  // of the second, 0 to 1
+  TextureId amount_texture = no_index;  // a number in its place
+};
+struct Hair {
+  SpectrumId sigma_a = 0;  // absorption, per radius of the fibre
+  float beta_m = 0.3f, beta_n = 0.3f, tilt_deg = 2;
+};
 struct Material {
   MaterialKind kind = MaterialKind::diffuse;
   SpectrumId reflectance = 0;
   TextureId reflectance_texture = no_index;  // in place of `reflectance`
+  TextureId alpha_x_texture = no_index, alpha_y_texture = no_index;
+  TextureId displacement = no_index;
+  ImageId normal_map = no_index;
   SpectrumId eta = 0, kappa = 0;
   float alpha_x = 0, alpha_y = 0;
   FresnelModel fresnel = FresnelModel::exact;
@@ -71,10 +124,17 @@ struct Material {
   uint32_t priority = 0;    // up to largest_priority; 0: not followed; the index is against whatever is around
   uint32_t thin = 0;
   float thickness = 0;  // metres; of a thin one with kappa
+  Layer layer;
+  SpectrumId transmittance = 0;
+  TextureId transmittance_texture = no_index;  // in place of `transmittance`
+  Mix mix;
+  Hair hair;
   static constexpr auto fields = std::make_tuple(
-      &Material::kind, &Material::reflectance, &Material::reflectance_texture, &Material::eta, &Material::kappa,
+      &Material::kind, &Material::reflectance, &Material::reflectance_texture, &Material::alpha_x_texture,
+      &Material::alpha_y_texture, &Material::displacement, &Material::normal_map, &Material::eta, &Material::kappa,
       &Material::alpha_x, &Material::alpha_y, &Material::fresnel, &Material::kd, &Material::ks, &Material::shininess,
-      &Material::normalized, &Material::priority, &Material::thin, &Material::thickness);
+      &Material::normalized, &Material::priority, &Material::thin, &Material::thickness, &Material::layer,
+      &Material::transmittance, &Material::transmittance_texture, &Material::mix, &Material::hair);
 };
 
 // The entity whose Material covers this entity's surface. Without a slot (and without a Material of its own) a
@@ -84,18 +144,21 @@ struct MaterialSlot {
   static constexpr auto fields = std::make_tuple(&MaterialSlot::material);
 };
 
-enum class LightKind : uint32_t { area, point, spot, directional, environment };
+enum class LightKind : uint32_t { area, point, spot, directional, environment, goniometric, projection };
 
 // area         emitted radiance along the normal, W m^-2 sr^-1 nm^-1, of the entity's Geometry, on the side of the
-// normal
-//              or both; at the angle theta to it cos^cosine_power theta times that. With `is_power` the power of the
-//              whole shape instead, W nm^-1
+//              normal or both; at the angle theta to it cos^cosine_power theta times that. With `is_power` the power of
+//              the whole shape instead, W nm^-1
 // point        intensity, W sr^-1 nm^-1, at the entity's origin
 // spot         intensity along the entity's -z axis, all of it up to `falloff_deg` from the axis, none beyond
-// `cone_deg` directional  irradiance on a plane facing it, W m^-2 nm^-1; light travels along the entity's -z axis, from
-// one
+// `cone_deg` goniometric  intensity times `image`, which covers the sphere around the entity's origin, +z up projection
+// intensity times `image`, thrown as a camera would take it: along the entity's +z axis, +y up, +x to the
+//              right of the image, `fov_deg` over its shorter side; none outside
+// directional  irradiance on a plane facing it, W m^-2 nm^-1; light travels along the entity's -z axis, from one
 //              direction or evenly from a disc of `angular_diameter_deg`
-// environment  radiance from infinity, times `image` (linear RGB of Scene::images) if there is one
+// environment  radiance from infinity, times `image` if there is one, +z up; there may be several. With `has_portal` it
+//              is seen through a rectangle in world space only, along the cross product of `portal_x` and `portal_y`
+// Images are linear RGB of Scene::images.
 struct Light {
   LightKind kind = LightKind::area;
   SpectrumId spectrum = 0;
@@ -106,15 +169,23 @@ struct Light {
   uint32_t is_power = 0;                 // 1: `spectrum` is the power of the shape
   float cone_deg = 30, falloff_deg = 0;  // half angles, 0 <= falloff_deg <= cone_deg <= 180
   float angular_diameter_deg = 0;        // below 180; 0: parallel light
-  static constexpr auto fields = std::make_tuple(&Light::kind, &Light::spectrum, &Light::scale, &Light::two_sided,
-                                                 &Light::image, &Light::cosine_power, &Light::is_power,
-                                                 &Light::cone_deg, &Light::falloff_deg, &Light::angular_diameter_deg);
+  float fov_deg = 90;                    // above 0 and below 180
+  uint32_t has_portal = 0;
+  glm::vec3 portal_corner{0}, portal_x{1, 0, 0}, portal_y{0, 1, 0};  // metres; the edges are perpendicular
+  static constexpr auto fields = std::make_tuple(
+      &Light::kind, &Light::spectrum, &Light::scale, &Light::two_sided, &Light::image, &Light::cosine_power,
+      &Light::is_power, &Light::cone_deg, &Light::falloff_deg, &Light::angular_diameter_deg, &Light::fov_deg,
+      &Light::has_portal, &Light::portal_corner, &Light::portal_x, &Light::portal_y);
 };
 
-enum class CameraKind : uint32_t { perspective, orthographic };
+enum class CameraKind : uint32_t { perspective, orthographic, spherical };
+// How the sphere of directions becomes a rectangle or a square.
+enum class ImageMapping : uint32_t { latitude_longitude, equal_area };
 
 // Looks along its local +z, +y up, +x to the RIGHT of the picture (left-handed camera space, as pbrt's; the
-// transform to the right-handed world mirrors).
+// transform to the right-handed world mirrors). Spherical cameras see all directions (a, b, c) in their axes x, y, z,
+// by latitude and longitude: (sin t cos p, cos t, sin t sin p) at p = 2 pi u, t = pi v of the picture's u, v from its
+// upper left corner; or by equal areas, the same with y and z exchanged (see systems/environment-inl.h).
 struct Camera {
   CameraKind kind = CameraKind::perspective;
   float fov_deg = 45;                   // over the shorter side of the picture; perspective only
@@ -122,8 +193,10 @@ struct Camera {
   float lens_radius = 0;                // metres; 0 is a pinhole
   float focal_distance = 1;             // metres along +z
   glm::vec4 screen_window{0, 0, 0, 0};  // x_min x_max y_min y_max on the plane of unit half-height; all 0: default
-  static constexpr auto fields = std::make_tuple(&Camera::kind, &Camera::fov_deg, &Camera::screen_height,
-                                                 &Camera::lens_radius, &Camera::focal_distance, &Camera::screen_window);
+  ImageMapping mapping = ImageMapping::latitude_longitude;  // spherical only
+  static constexpr auto fields =
+      std::make_tuple(&Camera::kind, &Camera::fov_deg, &Camera::screen_height, &Camera::lens_radius,
+                      &Camera::focal_distance, &Camera::screen_window, &Camera::mapping);
 };
 
 struct Name {
@@ -183,7 +256,7 @@ struct Source {
   static constexpr auto fields = std::make_tuple(&Source::file, &Source::line);
 };
 
-using Registry = BasicRegistry<Transform, Parent, Geometry, Material, MaterialSlot, Light, Camera, Name, Visibility,
-                               Medium, MediumGrid, MediumSlot, Source>;
+using Registry = BasicRegistry<Transform, Motion, Parent, Geometry, Material, MaterialSlot, Light, Camera, Name,
+                               Visibility, Medium, MediumGrid, MediumSlot, Source>;
 
 }  // namespace metamer

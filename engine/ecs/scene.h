@@ -1,6 +1,8 @@
 // A scene as its author made it: entities, and the heavy data their components refer to by handle.
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,6 +12,7 @@
 #include "engine/diagnostics.h"
 #include "engine/ecs/components.h"
 #include "engine/sampling/filters.h"
+#include "engine/schedule/tiles.h"
 #include "engine/spectrum/color_mode.h"
 #include "engine/spectrum/spectrum_set.h"
 
@@ -24,13 +27,12 @@ struct Mesh {
   Column<uint32_t> indices;  // three per triangle, counter-clockwise seen from the side of the normal
 };
 
-enum class ImageMapping : uint32_t { latitude_longitude, equal_area };
-
 // Linear RGB, row by row from the top.
 struct Image {
   std::string name;
   uint32_t width = 0, height = 0;
-  std::vector<float> rgb;  // 3 * width * height
+  std::vector<float> rgb;    // 3 * width * height
+  std::vector<float> alpha;  // width * height, or none: 1 everywhere
   ImageMapping mapping = ImageMapping::latitude_longitude;
   ColorSpace color_space = ColorSpace::srgb;
 };
@@ -66,10 +68,30 @@ struct RenderSettings {
   bool shadows = true;      // false: light sources shine through everything on what they light
   uint32_t band_count = 0;  // of the spectral film; 0: none
   Filter filter;
-  float sensor_scale = 1;    // exposure time times ISO / 100: multiplies what the film records
-  float exposure_stops = 0;  // tone mapping only
+  // x_min x_max y_min y_max of what is rendered, as fractions of the picture from its upper left corner.
+  glm::dvec4 crop{0, 1, 0, 1};
+  bool pixel_jitter = true;                    // false: all samples of a pixel go through its centre, and the lens's
+  double shutter_open = 0, shutter_close = 1;  // seconds; close after open. What moves is seen all the time in between
+  float sensor_scale = 1;                      // exposure time times ISO / 100: multiplies what the film records
+  float exposure_stops = 0;                    // tone mapping only
   ColorMode color = ColorMode::spectral;
 };
+
+// The pixels that are rendered: those of which the crop covers the upper left corner, at least one.
+inline TileRect rendered_pixels(const RenderSettings& settings) {
+  const auto pixel = [](double fraction, uint32_t side) {
+    // Fractions of whole pixels may have been rounded up.
+    return static_cast<uint32_t>(std::clamp(std::ceil(fraction * side - 1e-4), 0.0, double(side)));
+  };
+  const glm::dvec4& c = settings.crop;
+  TileRect rect{pixel(c.x, settings.width), pixel(c.z, settings.height), pixel(c.y, settings.width),
+                pixel(c.w, settings.height)};
+  rect.x0 = std::min(rect.x0, settings.width - 1);
+  rect.y0 = std::min(rect.y0, settings.height - 1);
+  rect.x1 = std::max(rect.x1, rect.x0 + 1);
+  rect.y1 = std::max(rect.y1, rect.y0 + 1);
+  return rect;
+}
 
 class NameTable {
  public:

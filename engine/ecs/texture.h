@@ -14,32 +14,88 @@ using TextureId = uint32_t;  // an index into Scene::textures
 // image         `image` at (u, v) by `mapping`, v = 0 being the lower edge; `scale` times it, then, if `invert`, 1 - it
 // scale         a times b
 // mix           (1 - amount) a + amount b
-// checkerboard  a where floor(u) + floor(v) is even, else b
-enum class TextureKind : uint32_t { constant, image, scale, mix, checkerboard };
-enum class TextureWrap : uint32_t { repeat, clamp, black };
+// checkerboard  a where floor(u) + floor(v) is even, else b; with three coordinates where all three make an even sum
+// and plain numbers, functions of the place alone, without operands:
+// coordinate    that of the mapping which `axis` counts
+// facing        |cosine| between the geometric normal and `axis_direction` (in the world)
+// dots          1 in dots of radius 0.35 around some integer points, else 0
+// fbm wrinkled  `octaves` of noise with weights roughness^i, and of its magnitude
+// windy         waves
+// square_root   of a, a number; 0 where that is negative
+// and marble    a reflectance: layers along y, `scale` of them, bent by noise of amplitude `variation`
+enum class TextureKind : uint32_t {
+  constant,
+  image,
+  scale,
+  mix,
+  checkerboard,
+  coordinate,
+  facing,
+  dots,
+  fbm,
+  wrinkled,
+  windy,
+  marble,
+  square_root,
+};
+// What of a pixel a number is.
+enum class TextureChannel : uint32_t { average, red, green, blue, alpha };
+// octahedral: over the edge of a square that is an unfolded sphere, to where its faces touch.
+enum class TextureWrap : uint32_t { repeat, clamp, black, octahedral };
 
-// u' = u_scale u + u_offset, v' alike.
-struct UvMapping {
+// Where on a texture a point of a surface lies.
+struct TextureMapping {
+  enum class Kind : uint32_t {
+    uv,           // u_scale u + u_offset, v alike
+    spherical,    // polar angle over pi, azimuth over 2 pi
+    cylindrical,  // azimuth over 2 pi plus a half, z
+    planar,       // along u_axis plus u_offset, v alike
+    point,        // all three coordinates
+  };
+  Kind kind = Kind::uv;
   float u_scale = 1, v_scale = 1, u_offset = 0, v_offset = 0;
+  float to_texture[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // from the world, row-major 3x4; not for uv
+  float u_axis[3] = {1, 0, 0}, v_axis[3] = {0, 1, 0};
 };
 
 struct Texture {
   TextureKind kind = TextureKind::constant;
   uint32_t spectrum = 0;  // SpectrumId
   float value = 0;
-  uint32_t is_number = 0;  // 1: a number (roughness, amount), 0: a reflectance
-  uint32_t image = 0;      // ImageId
+  uint32_t is_number = 0;                            // 1: a number (roughness, amount), 0: a reflectance
+  uint32_t image = 0;                                // ImageId
+  TextureChannel channel = TextureChannel::average;  // of a number
   TextureWrap wrap = TextureWrap::repeat;
   uint32_t nearest = 0;  // 1: the nearest texel, 0: linear between texels
   uint32_t invert = 0;
   float scale = 1;
-  UvMapping mapping;
+  TextureMapping mapping;
+  uint32_t axis = 0;  // 0 to 2
+  float axis_direction[3] = {0, 1, 0};
+  uint32_t octaves = 8;
+  float roughness = 0.5f, variation = 0.2f;
   TextureId a = 0, b = 0, amount = 0;  // earlier textures
 };
 
-enum class TextureOpcode : uint32_t { spectrum, number, image, multiply, mix, checkerboard };
+enum class TextureOpcode : uint32_t {
+  spectrum,
+  number,
+  image,
+  number_image,
+  multiply,
+  mix,
+  checkerboard,
+  coordinate,
+  facing,
+  dots,
+  fbm,
+  wrinkled,
+  windy,
+  marble,
+  square_root,
+};
 
-// Takes its operands from the stack (none, two or three of them, in the order a, b, amount) and leaves its value there.
+// Takes its operands from the stack (none to three of them, in the order a, b, amount) and leaves its value there.
 struct TextureOp {
   TextureOpcode code = TextureOpcode::number;
   uint32_t spectrum = 0;
@@ -47,7 +103,11 @@ struct TextureOp {
   uint32_t image = 0;  // row of TextureSet::images
   TextureWrap wrap = TextureWrap::repeat;
   uint32_t nearest = 0, invert = 0;
-  UvMapping mapping;
+  TextureMapping mapping;
+  uint32_t axis = 0;
+  float axis_direction[3] = {};
+  uint32_t octaves = 0;
+  float roughness = 0, variation = 0;
 };
 inline constexpr uint32_t deepest_texture_stack = 16;
 
@@ -55,7 +115,7 @@ struct TextureProgram {
   uint32_t begin = 0, end = 0;  // of TextureSet::ops
 };
 struct TextureImage {
-  uint32_t first_texel = 0;
+  uint32_t first_texel = 0;  // of spectra in `texels`, of numbers and normals in `numbers`
   uint32_t width = 0, height = 0;
 };
 
@@ -63,9 +123,12 @@ struct TextureSet {
   std::vector<TextureOp> ops;
   std::vector<TextureProgram> programs;
   std::vector<TextureImage> images;
-  Column<float> texels;           // four per texel: the sigmoid's c0 c1 c2, and a factor on it; or as below
-  bool has_coefficients = false;  // RGB mode: the texel's three coefficients and 0
-  size_t bytes() const { return ops.size() * sizeof(TextureOp) + texels.bytes(); }
+  std::vector<TextureImage> normal_maps;    // three numbers per texel: the file's red, green, blue
+  std::vector<uint32_t> normal_map_images;  // their ImageId
+  Column<float> texels;                     // four per texel: the sigmoid's c0 c1 c2, and a factor on it; or as below
+  bool has_coefficients = false;            // RGB mode: the texel's three coefficients and 0
+  Column<float> numbers;                    // one per texel
+  size_t bytes() const { return ops.size() * sizeof(TextureOp) + texels.bytes() + numbers.bytes(); }
 };
 
 }  // namespace metamer

@@ -4,6 +4,7 @@
 
 #include "engine/ecs/scene.h"
 #include "engine/sampling/distribution.h"
+#include "engine/sampling/window_distribution.h"
 #include "engine/simd/column.h"
 #include "engine/streams.h"
 
@@ -14,12 +15,15 @@ struct ObjectColumns {
   Column<uint32_t> kind;            // ShapeKind: mesh, sphere or disk (rectangles are meshes here)
   Column<uint32_t> first_triangle;  // into World::triangle_vertices; unused by quadrics
   Column<uint32_t> triangle_count;
-  Column<uint32_t> shade_kind;   // ShadeKind
-  Column<uint32_t> material;     // row in the table of that kind
+  Column<uint32_t> shade_kind;   // ShadeKind, or mixed_kind
+  Column<uint32_t> material;     // row in the table of that kind, of mixed_kind in World::mixes
   Column<uint32_t> first_light;  // light row of the first triangle, or no_index
   Column<uint32_t> placement;    // row in World::placements; 0 is the identity: vertices are in world space
   Column<uint32_t> visibility;   // mask of rays that see it
   Column<uint32_t> volume_inside, volume_outside;  // rows of World::volumes; keeps_volume in both: as before
+  Column<uint32_t> first_key;                      // into World::motion_keys; unused by what stands still
+  Column<uint32_t> key_count;  // 0: it stands still; else 2 or more, evenly spaced over the time of the shutter
+  Column<uint32_t> alpha;      // program of TextureSet: the chance that a ray meets it; no_index: 1
   size_t size() const { return kind.size(); }
 };
 
@@ -33,9 +37,20 @@ struct Placement {
 };
 static_assert(sizeof(Placement) == 32 * sizeof(float));
 
+// Where a moving object is at one time: rows of an affine matrix. Between two keys matrices are interpolated linearly.
+struct MotionKey {
+  float to_world[12];  // row-major 3x4
+  float padding[4] = {};
+};
+static_assert(sizeof(MotionKey) == 16 * sizeof(float));
+
 struct DiffuseColumns {
   Column<uint32_t> reflectance;  // SpectrumId
   Column<uint32_t> texture;      // program of TextureSet in its place, or no_index
+};
+struct DiffuseTransmissionColumns {
+  Column<uint32_t> reflectance, transmittance;                  // SpectrumId
+  Column<uint32_t> reflectance_texture, transmittance_texture;  // programs of TextureSet in their place, or no_index
 };
 struct RoughColumns {
   Column<uint32_t> kd, ks;  // SpectrumId
@@ -46,7 +61,8 @@ struct RoughColumns {
 struct CoatedColumns {
   Column<uint32_t> reflectance, eta;  // SpectrumId
   Column<uint32_t> texture;           // program of TextureSet in place of `reflectance`, or no_index
-  Column<float> alpha;
+  Column<float> alpha_x, alpha_y;
+  Column<float> thickness, hits;  // of the layer, optical; of the base, negative: without end
   Column<uint32_t> schlick;
   Column<uint32_t> first_row, row_stride, last_pair;  // of `albedos`
   Column<float> eta_least, rows_per_eta;
@@ -54,19 +70,28 @@ struct CoatedColumns {
 };
 struct ConductorColumns {
   Column<uint32_t> eta, kappa;  // SpectrumId
+  Column<uint32_t> texture;     // program of TextureSet, no_index: none. Its reflectance stands for eta and kappa
   Column<float> alpha_x, alpha_y;
-  Column<uint32_t> schlick;  // 1: Schlick's approximation
+  Column<uint32_t> alpha_texture[2];  // programs in place of alpha_x and alpha_y, or no_index
+  Column<uint32_t> schlick;           // 1: Schlick's approximation
 };
 // Everything that light enters, smooth, rough or thin.
 struct DielectricColumns {
   Column<uint32_t> eta, kappa;  // SpectrumId; eta against vacuum where `medium` is not 0, else against the outside
   Column<uint32_t> schlick;
-  Column<uint32_t> dispersive;     // 1: wavelengths part in refraction: eta differs, or some are opaque
-  Column<uint32_t> partly_opaque;  // 1: kappa reaches refracting_kappa on some wavelengths
-  Column<uint32_t> medium;         // row of World::media that is inside; 0: not followed
-  Column<float> alpha_x, alpha_y;  // rough ones
-  Column<float> thickness;         // metres; thin ones
-  Column<uint32_t> is_absolute;    // thin ones: eta is against vacuum
+  Column<uint32_t> dispersive;        // 1: wavelengths part in refraction: eta differs, or some are opaque
+  Column<uint32_t> partly_opaque;     // 1: kappa reaches refracting_kappa on some wavelengths
+  Column<uint32_t> medium;            // row of World::media that is inside; 0: not followed
+  Column<float> alpha_x, alpha_y;     // rough ones
+  Column<uint32_t> alpha_texture[2];  // programs in place of alpha_x and alpha_y, or no_index
+  Column<float> thickness;            // metres; thin ones
+  Column<uint32_t> is_absolute;       // thin ones: eta is against vacuum
+};
+// Which of two materials a hit is of: the second with the chance `amount`. A kind may be mixed_kind again.
+struct MixRow {
+  uint32_t kind[2] = {}, row[2] = {};
+  float amount = 0;
+  uint32_t amount_texture = no_index;  // program of TextureSet in its place
 };
 // What paths remember being inside of. Row 0 is the vacuum, of priority 0; all others have 1 at least.
 struct MediumColumns {
@@ -88,7 +113,7 @@ inline constexpr uint32_t keeps_volume = 0xffffffffu;
 // Beside those of component Visibility: shadow rays that look for the interfaces on their way.
 inline constexpr uint32_t visible_to_crossings = 8;
 
-// A light that can be chosen: one triangle or quadric, a point, a direction or a disc of directions, or the
+// A light that can be chosen: one triangle or quadric, a point, a direction or a disc of directions, or an
 // environment.
 enum class LightShape : uint32_t {
   triangle,
@@ -97,61 +122,101 @@ enum class LightShape : uint32_t {
   disk,
   point,  // shapes before this one have an area
   spot,
+  goniometric,
+  projection,
   directional,
   distant_disk,
   environment
 };
 // Abstract lights have no extent: nothing runs into them, and one direction is all there is to sample.
-constexpr bool is_abstract(LightShape shape) {
-  return shape == LightShape::point || shape == LightShape::spot || shape == LightShape::directional;
-}
+constexpr bool is_abstract(LightShape shape) { return shape >= LightShape::point && shape <= LightShape::directional; }
 struct LightRow {
   uint32_t shape = 0;  // LightShape
   uint32_t spectrum = 0;
   float scale = 0;
   uint32_t two_sided = 0;
   float choice_probability = 0;
-  // triangle: a vertex and two edges. sphere, ellipsoid, disk: centre, and `axes`. point, spot: position.
+  // triangle: a vertex and two edges. sphere, ellipsoid, disk: centre, and `axes`. point, spot, goniometric,
+  // projection: position.
   // directional, distant_disk: the direction towards the (centre of the) light.
   float p[3] = {};
   // triangle: two edges. quadrics: world images of the local x, y, z axes (times the radius).
   // spot: 1 - cos of the cone's half angle; 1 / (its difference to that where the falloff starts).
-  // distant_disk: 1 - cos of the half angle.
+  // distant_disk: 1 - cos of the half angle. projection: half the image's width and height at unit distance.
   float axes[9] = {};
-  float normal[3] = {};   // triangle, disk: unit normal of the emitting side. spot: unit direction of its axis
-  float area = 0;         // m^2
-  float inverse[9] = {};  // ellipsoid: rows of the inverse of `axes` as columns
+  float normal[3] = {};  // triangle, disk: unit normal of the emitting side. spot: unit direction of its axis
+  float area = 0;        // m^2
+  // sphere, ellipsoid: rows of the inverse of `axes` as columns. goniometric, projection: world to local.
+  // triangle: uv of the first vertex, and what the others' have more, where it has an image.
+  float inverse[9] = {};
   union {
     float normal_sign = 1;  // sphere, ellipsoid: -1 emits inwards
     float inner;            // disk: inner radius / radius
+    uint32_t mapping;       // goniometric: ImageMapping
   };
   float cosine_power = 0;  // shapes with an area: radiance goes with cos^cosine_power
 };
 static_assert(sizeof(LightRow) == 32 * sizeof(float));
 
-// Radiance from infinity: a spectrum, and where there is an image, per texel RGB fitted to spectra.
-struct Environment {
-  uint32_t light = no_index;  // its row of lights; no_index: black
-  uint32_t width = 0, height = 0;
-  ImageMapping mapping = ImageMapping::latitude_longitude;
+// An image that is a factor on a light's spectrum: RGB fitted to spectra. nearest: the texel, as pbrt-v4 reads images
+// of equal areas. linear: between the texels' centres, clamped at the image's edges, or around the circle in u.
+enum class ImageLookup : uint32_t { nearest, linear, linear_around };
+struct LightImage {
+  uint32_t first_texel = 0, width = 0, height = 0;
+  uint32_t lookup = 0;         // ImageLookup
+  uint32_t source = no_index;  // ImageId: rows of one image share its texels
+  float weight = 1;            // integral of its luminance over the directions it is sent to, sr; on a shape its mean
+  uint32_t padding[2] = {};
+};
+static_assert(sizeof(LightImage) == 8 * sizeof(uint32_t));
+struct LightImages {
+  Column<LightImage> rows;
   // Four per texel: sigmoid coefficients c0 c1 c2 and scale; in RGB mode the texel's three coefficients and 0.
   Column<float> texels;
   bool has_coefficients = false;
-  Distribution2D density;     // over the image's square, proportional to the texels' luminance times the measure
-  double mean_luminance = 1;  // of the image over the sphere
+};
+
+// A rectangle by which the light of an environment enters.
+struct Portal {
+  // Rows: unit vectors along the width, along the height, and through it, against the light.
+  float frame[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  float corner[3] = {};
+  float width = 0, height = 0;  // metres; 0: there is no portal
+  // Of directions, by the angles that their projections on the frame's xz and yz planes make with z, each from -pi / 2
+  // to pi / 2 as 0 to 1: lines of a window's edges are lines of constant angle.
+  WindowDistribution density;
+};
+
+// Radiance from infinity: a spectrum, and where there is an image, times that.
+struct Environment {
+  uint32_t light = no_index;  // its row of lights
+  uint32_t image = no_index;  // its row of images
+  ImageMapping mapping = ImageMapping::latitude_longitude;
+  Distribution2D density;  // over the image's square, proportional to the texels' luminance times the measure
   float to_world[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // rotation, row-major; to_local is its inverse
   float to_local[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  Portal portal;
+  bool has_portal() const { return portal.width > 0; }
 };
 
 // A pixel coordinate (x, y), y down, is seen along direction = normalize(axis + x right + y down) from `origin`
-// (perspective), or along `axis` from origin + x right + y down (orthographic).
+// (perspective), or along `axis` from origin + x right + y down (orthographic). Spherical: right, axis, down are the
+// camera's x, y and z axes, and (x x_step, y y_step) a place in the unit square.
 struct CameraRow {
   CameraKind kind = CameraKind::perspective;
   float origin[3] = {}, axis[3] = {}, right[3] = {}, down[3] = {};
   float lens_x[3] = {}, lens_y[3] = {};  // world vectors of the lens radius
   float lens_radius = 0, focal_distance = 1;
   float forward[3] = {};  // unit depth along the camera's axis, for the plane of focus
+  ImageMapping mapping = ImageMapping::latitude_longitude;  // spherical only
+  float x_step = 0, y_step = 0;
 };
+// What of a CameraRow moves, in its order; interpolated linearly like MotionKey.
+struct CameraKey {
+  float origin[3] = {}, axis[3] = {}, right[3] = {}, down[3] = {}, lens_x[3] = {}, lens_y[3] = {}, forward[3] = {};
+  float padding[11] = {};
+};
+static_assert(sizeof(CameraKey) == 32 * sizeof(float));
 
 // How many of a path's four wavelengths carry light. In RGB mode they are the channels' three, see color_mode.h.
 inline uint32_t live_wavelengths(const RenderSettings& settings) {
@@ -168,22 +233,31 @@ struct World {
   Column<float> uvs;                   // two per vertex; NaN: (0, 0), (1, 0), (1, 1) on every triangle, as in pbrt
   Column<uint32_t> triangle_vertices;  // three per triangle
   Column<Placement> placements;
+  Column<MotionKey> motion_keys;
   DiffuseColumns diffuse;
+  DiffuseTransmissionColumns diffuse_transmission;
   RoughColumns rough;
   CoatedColumns smooth_coated, rough_coated;
   ConductorColumns conductor;
   DielectricColumns dielectric;
+  Column<MixRow> mixes;
   MediumColumns media;
   uint32_t camera_media[2] = {0, 0};  // the stack that paths start with
   VolumeColumns volumes;
   uint32_t camera_volume = 0;  // the row of volumes that paths start in
   Column<LightRow> lights;
+  Column<uint32_t> image_of_light;  // its row of images, or no_index
+  LightImages light_images;
   std::vector<uint32_t> distant_disks;  // the rows of lights of that shape: rays that leave the scene run into them
   Distribution1D light_choice;          // over the rows of lights that are sampled; empty where there is none
   Column<uint32_t> summed_lights;  // rows of abstract lights that are summed one by one (local, recursive), not sampled
-  Environment environment;
+  std::vector<Environment> environments;  // rays that leave the scene run into all of them
   TextureSet textures;
-  CameraRow camera;
+  // By kind and row: what bends the shading normal. A program of TextureSet, or their number plus a row of normal_maps;
+  // no_index: nothing. Columns end with the last that has one.
+  std::array<Column<uint32_t>, shade_kind_count> bumps;
+  CameraRow camera;               // as the shutter opens
+  Column<CameraKey> camera_keys;  // empty: the camera stands still
   SpectrumSet spectra;
   RenderSettings settings;
   PixelFilter filter;
@@ -192,11 +266,18 @@ struct World {
   bool needs_tangents = false;  // an anisotropic material is present
   bool has_instances = false;   // some triangles are in their object's space
   bool has_quadrics = false;
-  bool has_interiors = false;   // some material is followed: paths carry their media
-  bool has_volumes = false;     // volumes other than the empty one, or interfaces: paths carry what they are in
-  bool has_interfaces = false;  // surfaces of ShadeKind::interface
-  bool shares_paths = false;    // free paths differ between wavelengths: paths carry their shares (PathStream)
-  bool has_textures() const { return !textures.programs.empty(); }
+  bool has_motion = false;          // some objects move: paths carry their time
+  bool has_interiors = false;       // some material is followed: paths carry their media
+  bool has_volumes = false;         // volumes other than the empty one, or interfaces: paths carry what they are in
+  bool has_interfaces = false;      // surfaces of ShadeKind::interface
+  bool shares_paths = false;        // free paths differ between wavelengths: paths carry their shares (PathStream)
+  bool has_textured_alpha = false;  // some roughness varies
+  bool has_bumps = false;
+  bool has_masks = false;         // some object's alpha is not 1
+  bool has_portals = false;       // some environment's light depends on where a ray that leaves the scene came from
+  bool has_shape_images = false;  // some shape emits an image
+  bool has_textures() const { return !textures.programs.empty() || !textures.normal_maps.empty(); }
+  bool needs_uvs() const { return has_textures() || has_shape_images; }
   uint64_t zero_area_triangles = 0;
   std::unique_ptr<Accelerator, void (*)(Accelerator*)> accelerator{nullptr, nullptr};
 };

@@ -99,9 +99,12 @@ void write_picture(Imf::OutputPart part, const Picture& picture, const Film* spe
     columns.push_back(column.data());
   }
   const size_t y_stride = sizeof(float) * picture.width;
+  const Imath::Box2i window = part.header().dataWindow();
   const auto slice = [&](const float* values, size_t first_row) {
     char* origin = reinterpret_cast<char*>(const_cast<float*>(values));  // only read when writing a file
-    return Imf::Slice(Imf::FLOAT, origin - y_stride * first_row, sizeof(float), y_stride);
+    const ptrdiff_t before = static_cast<ptrdiff_t>(y_stride) * (window.min.y + static_cast<ptrdiff_t>(first_row)) +
+                             static_cast<ptrdiff_t>(sizeof(float)) * window.min.x;
+    return Imf::Slice(Imf::FLOAT, origin - before, sizeof(float), y_stride);
   };
   for (uint32_t row = 0; row < picture.height; row += rows_per_block) {
     const uint32_t rows = std::min(rows_per_block, picture.height - row);

@@ -52,6 +52,21 @@ class ExrStream : public Imf::OStream {
   AtomicFile& file_;
 };
 
+constexpr const char *crop_x_attribute = "cropX", *crop_y_attribute = "cropY";
+
+// Windows of a part of so many pixels: the picture lies in its frame, the sums of the film begin at 0, 0.
+enum class Place : uint8_t { in_frame, at_origin };
+Imf::Header make_header(uint32_t width, uint32_t height, const FrameWindow& frame, Place place) {
+  const auto box = [](uint32_t x, uint32_t y, uint32_t w, uint32_t h) {
+    const auto at = [](uint32_t i) { return static_cast<int>(i); };
+    return Imath::Box2i(Imath::V2i(at(x), at(y)), Imath::V2i(at(x + w) - 1, at(y + h) - 1));
+  };
+  if (frame.full_width == 0) return {box(0, 0, width, height), box(0, 0, width, height)};
+  const bool is_shifted = place == Place::in_frame;
+  return {box(0, 0, frame.full_width, frame.full_height),
+          box(is_shifted ? frame.x : 0, is_shifted ? frame.y : 0, width, height)};
+}
+
 int clamped_int(uint64_t value) { return static_cast<int>(std::min<uint64_t>(value, INT32_MAX)); }
 
 void describe(Imf::Header& exr, const FrameHeader& header) {
@@ -62,12 +77,16 @@ void describe(Imf::Header& exr, const FrameHeader& header) {
   exr.insert("software", Imf::StringAttribute(header.software));
   exr.insert("scene", Imf::StringAttribute(header.scene));
   exr.insert("seed", Imf::StringAttribute(std::to_string(header.seed)));
+  if (header.window.full_width > 0) {
+    exr.insert(crop_x_attribute, Imf::IntAttribute(static_cast<int>(header.window.x)));
+    exr.insert(crop_y_attribute, Imf::IntAttribute(static_cast<int>(header.window.y)));
+  }
   for (const auto& [name, value] : header.settings) exr.insert(settings_prefix + name, Imf::StringAttribute(value));
 }
 
 Imf::Header picture_header(const Picture& picture, const FrameHeader& header, const SampleTotals& samples,
                            bool has_film, const Film* spectral) {
-  Imf::Header exr(static_cast<int>(picture.width), static_cast<int>(picture.height));
+  Imf::Header exr = make_header(picture.width, picture.height, header.window, Place::in_frame);
   exr.compression() = Imf::ZIP_COMPRESSION;
   for (const char* name : {"R", "G", "B"}) exr.channels().insert(name, Imf::Channel(Imf::FLOAT));
   describe(exr, header);
@@ -99,7 +118,7 @@ std::vector<std::pair<std::string, uint32_t>> film_channels() {
 }
 
 Imf::Header film_header(const Film& film, const FrameHeader& header) {
-  Imf::Header exr(static_cast<int>(film.width()), static_cast<int>(film.height()));
+  Imf::Header exr = make_header(film.width(), film.height(), header.window, Place::at_origin);
   exr.compression() = Imf::ZIP_COMPRESSION;
   for (const auto& [name, word] : film_channels()) exr.channels().insert(name, Imf::Channel(Imf::UINT));
   describe(exr, header);
@@ -112,7 +131,7 @@ Imf::Header film_header(const Film& film, const FrameHeader& header) {
 }
 
 Imf::Header bands_header(const Film& film, const FrameHeader& header) {
-  Imf::Header exr(static_cast<int>(film.width()), static_cast<int>(film.height()));
+  Imf::Header exr = make_header(film.width(), film.height(), header.window, Place::at_origin);
   exr.compression() = Imf::ZIP_COMPRESSION;
   add_band_sum_channels(exr, film.band_count());
   describe(exr, header);
@@ -318,6 +337,12 @@ FrameHeader read_exr_header(const Imf::Header& exr) {
     if (const std::string name = it.name(); name.starts_with(settings_prefix))
       header.settings.emplace_back(name.substr(settings_prefix.size()), exr_text(exr, name));
   if (uint64_t seed = 0; parse_number(exr_text(exr, "seed"), seed)) header.seed = seed;
+  if (exr.findTypedAttribute<Imf::IntAttribute>(crop_x_attribute) != nullptr) {
+    const Imath::Box2i& frame = exr.displayWindow();
+    header.window = {static_cast<uint32_t>(number_of(exr, crop_x_attribute)),
+                     static_cast<uint32_t>(number_of(exr, crop_y_attribute)), static_cast<uint32_t>(frame.max.x) + 1,
+                     static_cast<uint32_t>(frame.max.y) + 1};
+  }
   return header;
 }
 

@@ -13,6 +13,11 @@
 
 namespace metamer {
 
+// Where a picture lies in its whole frame, pixels. full_width 0: it is the whole.
+struct FrameWindow {
+  uint32_t x = 0, y = 0, full_width = 0, full_height = 0;
+};
+
 // What a file says about its frame. Nothing here may depend on when, where or on how many threads it was made.
 struct FrameHeader {
   Chromaticities chromaticities;
@@ -20,6 +25,7 @@ struct FrameHeader {
   std::string software;       // "metamer <version>"
   std::string scene;          // its name
   uint64_t seed = 0;
+  FrameWindow window;
   std::vector<std::pair<std::string, std::string>> settings;  // written as `metamer:<name>`, in any order
 };
 

@@ -22,15 +22,20 @@ struct Alias {
   size_t column;
 };
 constexpr Alias aliases[] = {
-    {"BK7", "dispersion/N-BK7", 0},         {"SF11", "dispersion/N-SF11", 0},
-    {"SF66", "dispersion/N-SF66", 0},       {"LAK33", "dispersion/N-LAK33B", 0},
-    {"FK51", "dispersion/N-FK51A", 0},      {"sapphire", "dispersion/sapphire-o", 0},
-    {"glass-BK7", "dispersion/N-BK7", 0},   {"glass-SF10", "dispersion/SF10", 0},
-    {"glass-SF11", "dispersion/N-SF11", 0}, {"glass-FK51A", "dispersion/N-FK51A", 0},
-    {"stdillum-A", "illuminant/A", 1},      {"stdillum-D50", "illuminant/D50", 1},
-    {"stdillum-D65", "illuminant/D65", 1},  {"stdillum-F1", "illuminant/FL1", 1},
-    {"stdillum-F2", "illuminant/FL2", 1},   {"stdillum-F7", "illuminant/FL7", 1},
-    {"stdillum-F11", "illuminant/FL11", 1}, {"stdillum-F12", "illuminant/FL12", 1},
+    {"BK7", "dispersion/N-BK7", 0},           {"SF11", "dispersion/N-SF11", 0},
+    {"SF66", "dispersion/N-SF66", 0},         {"LAK33", "dispersion/N-LAK33B", 0},
+    {"FK51", "dispersion/N-FK51A", 0},        {"sapphire", "dispersion/sapphire-o", 0},
+    {"glass-BK7", "dispersion/N-BK7", 0},     {"glass-SF10", "dispersion/SF10", 0},
+    {"glass-SF11", "dispersion/N-SF11", 0},   {"glass-FK51A", "dispersion/N-FK51A", 0},
+    {"stdillum-A", "illuminant/A", 1},        {"stdillum-D50", "illuminant/D50", 1},
+    {"stdillum-D65", "illuminant/D65", 1},    {"stdillum-F1", "illuminant/FL1", 1},
+    {"stdillum-F2", "illuminant/FL2", 1},     {"stdillum-F7", "illuminant/FL7", 1},
+    {"stdillum-F11", "illuminant/FL11", 1},   {"stdillum-F12", "illuminant/FL12", 1},
+    {"stdillum-F3", "illuminant/FL3", 1},     {"stdillum-F4", "illuminant/FL4", 1},
+    {"stdillum-F5", "illuminant/FL5", 1},     {"stdillum-F6", "illuminant/FL6", 1},
+    {"stdillum-F8", "illuminant/FL8", 1},     {"stdillum-F9", "illuminant/FL9", 1},
+    {"stdillum-F10", "illuminant/FL10", 1},   {"glass-BAF10", "dispersion/N-BAF10", 0},
+    {"glass-LASF9", "dispersion/N-LASF9", 0}, {"glass-SF5", "dispersion/SF5", 0},
 };
 
 // The part of a data table's name after "folder/", or nothing if it is not in that folder.

@@ -131,6 +131,20 @@ SpectrumResult SpectrumSet::add_table(std::span<const double> lambda_nm, std::sp
   return add_samples(resample(lambda_nm, values, extend));
 }
 
+SpectrumResult SpectrumSet::add_sigmoid(const std::array<double, 3>& coefficients, SpectrumId times) {
+  SpectrumRow row = rows_[times];
+  const SpectrumRow flat = rows_[unit_spectrum];
+  if (row.c0 != flat.c0 || row.c1 != flat.c1 || row.c2 != flat.c2)
+    return failure("a smooth spectrum cannot be multiplied by another one");
+  for (const double c : coefficients)
+    if (!representable(c)) return not_representable(c);
+  row.c0 = static_cast<float>(coefficients[0]);
+  row.c1 = static_cast<float>(coefficients[1]);
+  row.c2 = static_cast<float>(coefficients[2]);
+  row.coefficients = no_coefficients;
+  return {append(row), {}};
+}
+
 SpectrumResult SpectrumSet::add_rgb(const Color3& rgb, RgbKind kind, ColorSpace space) {
   const double limit = kind == RgbKind::albedo ? 1.0 : largest_value / 4.0;
   for (const double channel : rgb) {

@@ -63,6 +63,8 @@ class SpectrumSet {
   // Two or more points, strictly ascending in wavelength, finite; see `resample` for what happens between them.
   SpectrumResult add_table(std::span<const double> lambda_nm, std::span<const double> values, Extend extend);
   SpectrumResult add_samples(const Samples& samples);
+  // S(c0 t^2 + c1 t + c2), see rgb_fit.h, times another spectrum that is no such curve itself.
+  SpectrumResult add_sigmoid(const std::array<double, 3>& coefficients, SpectrumId times);
   SpectrumResult add_rgb(const Color3& rgb, RgbKind kind, ColorSpace space = ColorSpace::srgb);
   // Planck's radiance, W m^-2 sr^-1 nm^-1; temperature > 0.
   SpectrumResult add_blackbody(double kelvin);

@@ -3,6 +3,7 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -38,16 +39,52 @@ std::array<int, 3> color_channels(const OIIO::ImageSpec& spec) {
   return is_grey ? std::array<int, 3>{0, 0, 0} : std::array<int, 3>{0, 1, 2};
 }
 
-bool check_pixels(const Image& image, Diagnostics& diagnostics) {
+// Of the file's alpha `nth` of each pixel's `channels` values; none where it is 1 everywhere.
+std::vector<float> alpha_of(const std::vector<float>& all, size_t channels, int nth,
+                            const std::vector<float>& decoded) {
+  std::vector<float> alpha;
+  if (nth < 0) return alpha;
+  const float last_code = static_cast<float>(decoded.size()) - 1;
+  bool is_one = true;
+  for (size_t i = static_cast<size_t>(nth); i < all.size(); i += channels) {
+    const float value = std::clamp(all[i], 0.0f, 1.0f);
+    alpha.push_back(decoded.empty() ? value : decoded[static_cast<size_t>(value * last_code + 0.5f)]);
+    is_one = is_one && alpha.back() == 1;
+  }
+  return is_one ? std::vector<float>() : alpha;
+}
+
+// The colour space whose primaries and white the file names, to a thousandth, which is what pbrt-v4 takes for the same;
+// sRGB where it names none, and with a warning where it names others.
+ColorSpace color_space_of(const OIIO::ImageSpec& spec, const std::string& path, Diagnostics& diagnostics) {
+  float named[8];
+  if (!spec.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), named)) return ColorSpace::srgb;
+  for (size_t i = 0; i < color_space_count; ++i) {
+    const auto space = static_cast<ColorSpace>(i);
+    const Matrix3& to_xyz = rgb_to_xyz(space);
+    double worst = 0;
+    for (size_t c = 0; c < 4; ++c) {
+      const auto [x, y] = chromaticity(c < 3 ? Color3{to_xyz[0][c], to_xyz[1][c], to_xyz[2][c]} : white_xyz(space));
+      worst = std::max({worst, std::abs(x - double{named[2 * c]}), std::abs(y - double{named[2 * c + 1]})});
+    }
+    if (worst < 1e-3) return space;
+  }
+  diagnostics.warning({path, 0}, "its chromaticities are those of no known colour space; it is read as sRGB");
+  return ColorSpace::srgb;
+}
+
+bool check_pixels(const Image& image, bool allows_negative, Diagnostics& diagnostics) {
+  const float least = allows_negative ? -std::numeric_limits<float>::max() : 0;
   size_t count = 0, first = 0;
   for (size_t i = 0; i < image.rgb.size(); ++i) {
-    const bool good = image.rgb[i] >= 0 && image.rgb[i] <= std::numeric_limits<float>::max();
+    const bool good = image.rgb[i] >= least && image.rgb[i] <= std::numeric_limits<float>::max();
     if (!good && count++ == 0) first = i;
   }
   if (count == 0) return true;
-  diagnostics.error({image.name, 0},
-                    fmt::format("pixel ({}, {}) holds {}; expected finite values of at least 0 ({} such values in all)",
-                                first / 3 % image.width, first / 3 / image.width, image.rgb[first], count));
+  diagnostics.error(
+      {image.name, 0},
+      fmt::format("pixel ({}, {}) holds {}; expected finite values{} ({} such values in all)", first / 3 % image.width,
+                  first / 3 / image.width, image.rgb[first], allows_negative ? "" : " of at least 0", count));
   return false;
 }
 
@@ -76,6 +113,7 @@ bool read_image(const std::string& path, const SourceLocation& named_at, Image& 
   image.name = path;
   image.width = static_cast<uint32_t>(spec.width);
   image.height = static_cast<uint32_t>(spec.height);
+  image.color_space = color_space_of(spec, path, diagnostics);
   const auto channel_count = static_cast<size_t>(spec.nchannels);
   std::vector<float> all;
   try {
@@ -94,7 +132,9 @@ bool read_image(const std::string& path, const SourceLocation& named_at, Image& 
       image.rgb[3 * pixel + c] = is_encoded ? decoded[static_cast<size_t>(value * last_code + 0.5f)] : value;
     }
   }
-  return check_pixels(image, diagnostics);
+  const int alpha = spec.alpha_channel >= 0 ? spec.alpha_channel : spec.channelindex("A");
+  image.alpha = alpha_of(all, channel_count, alpha, encoding.decodes_alpha ? decoded : std::vector<float>());
+  return check_pixels(image, encoding.allows_negative, diagnostics);
 }
 
 }  // namespace metamer

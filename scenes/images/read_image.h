@@ -9,12 +9,16 @@ namespace metamer {
 // How integer channels are encoded: 0 as sRGB, else as the power `gamma` (1: linear).
 struct ImageEncoding {
   double gamma = 0;
+  bool allows_negative = false;
+  bool decodes_alpha = false;  // like the colours; else alpha is linear
 };
 
 // Reads EXR, HDR, PFM, PNG, JPEG, TGA and what else OpenImageIO knows as linear RGB from the top row down. Formats of 8
 // or 16 bits an integer channel are decoded, by default from sRGB (IEC 61966-2-1); floating-point ones are linear.
-// Alpha is dropped, grey fills all three channels. False after reporting what is wrong: at `named_at` if the file
-// cannot be read, else at the file itself, also where a pixel is negative or not finite.
+// Alpha is kept where it is not 1 everywhere; grey fills all three channels. The colour space is the one whose
+// chromaticities an EXR file names. False after reporting what is wrong: at
+// `named_at` if the file cannot be read, else at the file itself, also where a pixel is not finite, or negative and
+// should not be.
 bool read_image(const std::string& path, const SourceLocation& named_at, Image& image, Diagnostics& diagnostics,
                 const ImageEncoding& encoding = {});
 

@@ -6,8 +6,8 @@
 
 namespace metamer {
 
-// Reads PLY or OBJ, told apart by their extension. `named_at` is the place that asked for the file;
-// mistakes inside the file are reported with the file's own lines.
+// Reads PLY or OBJ, told apart by their extension; both may be compressed by gzip. `named_at` is the place that asked
+// for the file; mistakes inside the file are reported with the file's own lines.
 bool read_mesh(const std::string& path, const SourceLocation& named_at, Mesh& mesh, Diagnostics& diagnostics);
 
 // Turk, "The PLY Polygon File Format", 1994: ascii and binary of either byte order, any scalar types; elements and

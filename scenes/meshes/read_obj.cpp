@@ -9,7 +9,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "scenes/file_bytes.h"
+#include "scenes/gzip.h"
 #include "scenes/meshes/read_mesh.h"
 
 namespace metamer {
@@ -197,7 +197,7 @@ std::string without_comments(std::string_view text) {
 
 bool read_obj(const std::string& path, const SourceLocation& named_at, Mesh& mesh, Diagnostics& diagnostics) {
   FileBytes bytes;
-  if (!read_file(path, named_at, bytes, diagnostics)) return false;
+  if (!read_packed_file(path, named_at, bytes, diagnostics)) return false;
   if (!ObjChecker(bytes.text(), path, diagnostics).check()) return false;
   tinyobj::ObjReaderConfig config;
   config.triangulate = true;

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "scenes/file_bytes.h"
+#include "scenes/gzip.h"
 #include "scenes/meshes/ply_source.h"
 #include "scenes/meshes/read_mesh.h"
 
@@ -270,7 +270,7 @@ bool check_elements(const Header& header, const std::string& path, Diagnostics& 
 
 bool read_ply(const std::string& path, const SourceLocation& named_at, Mesh& mesh, Diagnostics& diagnostics) {
   FileBytes bytes;
-  return read_file(path, named_at, bytes, diagnostics) && read_ply_text(bytes.text(), path, mesh, diagnostics);
+  return read_packed_file(path, named_at, bytes, diagnostics) && read_ply_text(bytes.text(), path, mesh, diagnostics);
 }
 
 bool read_ply_text(std::string_view file, const std::string& path, Mesh& mesh, Diagnostics& diagnostics) {

@@ -10,6 +10,11 @@ std::optional<Camera> read_camera(const SceneContext& context, const Json::Value
   if (object.type() == "perspective") {
     camera.kind = CameraKind::perspective;
     camera.fov_deg = object.number_f("fov", field_of_view, camera.fov_deg);
+  } else if (object.type() == "spherical") {
+    constexpr std::array<std::string_view, 2> mappings = {"latitude_longitude", "equal_area"};
+    camera.kind = CameraKind::spherical;
+    camera.mapping = static_cast<ImageMapping>(object.choice("mapping", mappings, 0));
+    return camera;
   } else {
     camera.kind = CameraKind::orthographic;
     camera.screen_height = context.metres(object.number("screen_height", positive, 2));

@@ -64,6 +64,7 @@ class EntityReader {
     if (const Json::Value* value = object.find("light")) set_light(entity, object, *value);
     if (const Json::Value* value = object.find("visibility")) registry_.set(entity, read_visibility(context_, *value));
     if (const Json::Value* value = object.find("media")) set_media(entity, object, *value);
+    if (const Json::Value* value = object.find("motion")) registry_.set(entity, read_motion(context_, *value));
     const Transform transform = read_transform(context_, object.find("transform"));
     if (object.has("camera")) {
       set_camera(entity, object, transform);
@@ -128,6 +129,7 @@ class EntityReader {
   void set_camera(Entity entity, const JsonObject& object, const Transform& transform) {
     if (const auto camera = read_camera(context_, *object.find("camera"))) registry_.set(entity, *camera);
     registry_.set(entity, mirrored_z(transform));
+    mirror_motion(entity, mirrored_z);
     for (const std::string_view key : {"geometry", "light"})
       if (object.has(key))
         reader_.error(*object.find(key), fmt::format("an entity with a camera cannot have '{}'; make it a child", key));
@@ -135,8 +137,19 @@ class EntityReader {
 
   void unmirror_child_of_camera(Entity entity) {
     const Entity parent = registry_.get<Parent>(entity).entity;
-    if (!parent.is_null() && registry_.has<Camera>(parent))
-      registry_.set(entity, then_mirrored_z(registry_.get<Transform>(entity)));
+    if (parent.is_null() || !registry_.has<Camera>(parent)) return;
+    registry_.set(entity, then_mirrored_z(registry_.get<Transform>(entity)));
+    mirror_motion(entity, then_mirrored_z);
+  }
+
+  void mirror_motion(Entity entity, Transform (*mirror)(const Transform&)) {
+    if (!registry_.has<Motion>(entity)) return;
+    Motion motion = registry_.get<Motion>(entity);
+    const Transform end = mirror({motion.row0, motion.row1, motion.row2});
+    motion.row0 = end.row0;
+    motion.row1 = end.row1;
+    motion.row2 = end.row2;
+    registry_.set(entity, motion);
   }
 
   // Walks up from every entity; what was walked before need not be walked again.
@@ -180,13 +193,19 @@ void read_materials(SceneContext& context, const Json::Value& materials) {
     context.reader.expected(materials, "materials", "an object of named materials");
     return;
   }
-  for (auto it = materials.begin(); it != materials.end(); ++it) {
-    if (is_repeated_key(it.name())) continue;
+  // Names first, so that materials may be mixed of any others.
+  const auto members = members_in_order(materials);
+  std::vector<Entity> entities;
+  for (const auto& [name, value] : members) {
     const Entity entity = context.scene.registry.create();
-    context.scene.registry.set(entity, Source{context.file, context.reader.document().at_key(*it).line});
-    name_entity(context, entity, it.name(), *it, true);
-    context.reader.set_subject(fmt::format("material '{}'", printable_text(it.name())));
-    if (const auto material = read_material(context, *it)) context.scene.registry.set(entity, *material);
+    entities.push_back(entity);
+    context.scene.registry.set(entity, Source{context.file, context.reader.document().at_key(*value).line});
+    name_entity(context, entity, name, *value, true);
+  }
+  for (size_t i = 0; i < members.size(); ++i) {
+    const auto& [name, value] = members[i];
+    context.reader.set_subject(fmt::format("material '{}'", printable_text(name)));
+    if (const auto material = read_material(context, *value)) context.scene.registry.set(entities[i], *material);
     context.reader.set_subject({});
   }
 }

@@ -172,6 +172,16 @@ std::string printable_text(const std::string& text) {
   return text.size() > longest ? shown + "..." : shown;
 }
 
+std::vector<JsonMember> members_in_order(const Json::Value& object) {
+  std::vector<JsonMember> members;
+  for (auto it = object.begin(); it != object.end(); ++it)
+    if (!is_repeated_key(it.name())) members.push_back({it.name(), &*it});
+  std::sort(members.begin(), members.end(), [](const JsonMember& a, const JsonMember& b) {
+    return a.value->getOffsetStart() < b.value->getOffsetStart();
+  });
+  return members;
+}
+
 std::string describe_value(const Json::Value& value) {
   switch (value.type()) {
     case Json::nullValue: return "null";

@@ -42,6 +42,13 @@ class JsonDocument {
 inline constexpr char repeated_key_mark = '\x01';
 inline bool is_repeated_key(const std::string& key) { return !key.empty() && key[0] == repeated_key_mark; }
 
+// The members of an object in the order of the text, without repeated ones.
+struct JsonMember {
+  std::string name;
+  const Json::Value* value;
+};
+std::vector<JsonMember> members_in_order(const Json::Value& object);
+
 // "the number 3", "an array of 4", ... for messages.
 std::string describe_value(const Json::Value& value);
 

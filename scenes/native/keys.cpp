@@ -5,20 +5,42 @@ namespace {
 
 constexpr bool required = true;
 
-constexpr KeySpec scene[] = {{"$schema"},           {"metamer", required}, {"units"}, {"settings"},
-                             {"spectra"},           {"materials"},         {"media"}, {"meshes"},
-                             {"entities", required}};
-constexpr KeySpec settings[] = {{"size"},   {"samples"},  {"max_depth"},    {"seed"},     {"integrator"}, {"shadows"},
-                                {"filter"}, {"exposure"}, {"sensor_scale"}, {"spectral"}, {"color"}};
+constexpr KeySpec scene[] = {{"$schema"},  {"metamer", required}, {"units"}, {"settings"}, {"spectra"},
+                             {"textures"}, {"materials"},         {"media"}, {"meshes"},   {"entities", required}};
+constexpr KeySpec settings[] = {{"size"},    {"samples"}, {"max_depth"},    {"seed"},         {"integrator"},
+                                {"shadows"}, {"filter"},  {"exposure"},     {"sensor_scale"}, {"spectral"},
+                                {"color"},   {"crop"},    {"pixel_jitter"}, {"shutter"}};
 constexpr KeySpec filter_box[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_triangle[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_gaussian[] = {{"type", required}, {"radius"}, {"sigma"}};
-constexpr KeySpec spectrum[] = {{"constant"}, {"table"}, {"named"}, {"blackbody"},
-                                {"daylight"}, {"rgb"},   {"space"}, {"scale"}};
+constexpr KeySpec spectrum[] = {{"constant"}, {"table"}, {"named"},   {"blackbody"}, {"daylight"}, {"rgb"},
+                                {"space"},    {"scale"}, {"samples"}, {"sigmoid"},   {"times"}};
+constexpr KeySpec texture_reference[] = {{"texture", required}};
+constexpr KeySpec texture_constant[] = {{"type", required}, {"value", required}, {"number"}};
+constexpr KeySpec texture_image[] = {{"type", required}, {"image", required}, {"encoding"}, {"space"},   {"wrap"},
+                                     {"filter"},         {"scale"},           {"invert"},   {"mapping"}, {"number"}};
+constexpr KeySpec texture_checkerboard[] = {{"type", required}, {"a"}, {"b"}, {"mapping"}, {"number"}};
+constexpr KeySpec texture_scale[] = {{"type", required}, {"a", required}, {"b"}, {"number"}};
+constexpr KeySpec texture_mix[] = {{"type", required}, {"a", required}, {"b", required}, {"amount"}, {"number"}};
+constexpr KeySpec texture_coordinate[] = {{"type", required}, {"axis"}, {"mapping"}};
+constexpr KeySpec texture_facing[] = {{"type", required}, {"direction"}};
+constexpr KeySpec texture_dots[] = {{"type", required}, {"mapping"}};
+constexpr KeySpec texture_noise[] = {{"type", required}, {"octaves"}, {"roughness"}, {"mapping"}};
+constexpr KeySpec texture_windy[] = {{"type", required}, {"mapping"}};
+constexpr KeySpec texture_marble[] = {{"type", required}, {"scale"},     {"variation"},
+                                      {"octaves"},        {"roughness"}, {"mapping"}};
+constexpr KeySpec mapping_uv[] = {{"type", required}, {"scale"}, {"offset"}};
+constexpr KeySpec mapping_in_space[] = {{"type", required}, {"to_texture"}};
+constexpr KeySpec mapping_planar[] = {{"type", required}, {"to_texture"}, {"u_axis"}, {"v_axis"}, {"offset"}};
 constexpr KeySpec material_diffuse[] = {{"type", required}, {"reflectance", required}};
 constexpr KeySpec material_rough[] = {{"type", required}, {"kd"}, {"ks"}, {"shininess"}, {"normalized"}};
 constexpr KeySpec material_coated[] = {{"type", required}, {"reflectance", required}, {"glass"}, {"eta"}, {"roughness"},
                                        {"fresnel"}};
+constexpr KeySpec material_layered[] = {{"type", required}, {"reflectance", required}, {"glass"},    {"eta"},
+                                        {"roughness"},      {"optical_thickness"},     {"max_depth"}};
+constexpr KeySpec material_diffuse_transmission[] = {
+    {"type", required}, {"reflectance", required}, {"transmittance", required}};
+constexpr KeySpec material_mix[] = {{"type", required}, {"first", required}, {"second", required}, {"amount"}};
 constexpr KeySpec material_conductor[] = {{"type", required}, {"metal"},     {"eta"},
                                           {"kappa"},          {"roughness"}, {"fresnel"}};
 constexpr KeySpec material_dielectric[] = {{"type", required}, {"glass"},    {"eta"},  {"kappa"},    {"roughness"},
@@ -30,8 +52,8 @@ constexpr KeySpec material_interface[] = {{"type", required}};
 constexpr KeySpec medium_homogeneous[] = {{"type", required}, {"sigma_a"}, {"sigma_s"}, {"scale"}, {"g"}, {"emission"}};
 constexpr KeySpec entity_media[] = {{"inside"}, {"outside"}};
 constexpr KeySpec mesh[] = {{"file"}, {"positions"}, {"indices"}, {"normals"}, {"uvs"}};
-constexpr KeySpec entity[] = {{"name"},  {"parent"}, {"transform"},  {"geometry"}, {"material"},
-                              {"light"}, {"camera"}, {"visibility"}, {"media"}};
+constexpr KeySpec entity[] = {{"name"},     {"parent"}, {"transform"}, {"motion"},     {"geometry"},
+                              {"material"}, {"light"},  {"camera"},    {"visibility"}, {"media"}};
 constexpr KeySpec transform[] = {{"matrix"}, {"translate"}, {"rotate"}, {"scale"}, {"look_at"}};
 constexpr KeySpec rotate[] = {{"axis", required}, {"degrees", required}};
 constexpr KeySpec look_at[] = {{"from", required}, {"to", required}, {"up"}};
@@ -39,15 +61,19 @@ constexpr KeySpec geometry_mesh[] = {{"type", required}, {"mesh", required}, {"f
 constexpr KeySpec geometry_sphere[] = {{"type", required}, {"radius"}, {"flip_normal"}};
 constexpr KeySpec geometry_disk[] = {{"type", required}, {"radius"}, {"inner_radius"}, {"height"}, {"flip_normal"}};
 constexpr KeySpec geometry_rectangle[] = {{"type", required}, {"width"}, {"depth"}, {"flip_normal"}};
-constexpr KeySpec light_area[] = {{"type", required}, {"radiance"},     {"luminance"}, {"nits"},     {"lumens"},
-                                  {"spectrum"},       {"cosine_power"}, {"scale"},     {"two_sided"}};
+constexpr KeySpec light_area[] = {{"type", required}, {"radiance"}, {"luminance"}, {"nits"},  {"lumens"}, {"spectrum"},
+                                  {"cosine_power"},   {"scale"},    {"two_sided"}, {"power"}, {"image"},  {"space"}};
 constexpr KeySpec light_point[] = {{"type", required}, {"intensity"}, {"candela"}, {"lumens"}, {"spectrum"}, {"scale"}};
 constexpr KeySpec light_spot[] = {{"type", required}, {"intensity"},  {"candela"},       {"lumens"},
                                   {"spectrum"},       {"cone_angle"}, {"falloff_start"}, {"scale"}};
 constexpr KeySpec light_directional[] = {{"type", required}, {"irradiance"},       {"lux"},
                                          {"spectrum"},       {"angular_diameter"}, {"scale"}};
-constexpr KeySpec light_environment[] = {{"type", required}, {"radiance"}, {"luminance"}, {"nits"}, {"spectrum"},
-                                         {"scale"},          {"image"},    {"mapping"},   {"space"}};
+constexpr KeySpec light_environment[] = {{"type", required}, {"radiance"}, {"luminance"}, {"nits"},  {"spectrum"},
+                                         {"scale"},          {"image"},    {"mapping"},   {"space"}, {"portal"}};
+constexpr KeySpec light_goniometric[] = {{"type", required}, {"intensity"},       {"candela"}, {"lumens"}, {"spectrum"},
+                                         {"scale"},          {"image", required}, {"mapping"}, {"space"}};
+constexpr KeySpec light_projection[] = {{"type", required}, {"intensity"},       {"candela"}, {"lumens"}, {"spectrum"},
+                                        {"scale"},          {"image", required}, {"fov"},     {"space"}};
 constexpr KeySpec light_sky[] = {{"type", required}, {"turbidity"}, {"sun_elevation"},
                                  {"sun_azimuth"},    {"sun"},       {"ground_albedo"},
                                  {"resolution"},     {"up"},        {"scale"}};
@@ -55,6 +81,8 @@ constexpr KeySpec camera_perspective[] = {
     {"type", required}, {"fov"}, {"lens_radius"}, {"focal_distance"}, {"screen_window"}};
 constexpr KeySpec camera_orthographic[] = {
     {"type", required}, {"screen_height"}, {"lens_radius"}, {"focal_distance"}, {"screen_window"}};
+constexpr KeySpec camera_spherical[] = {{"type", required}, {"mapping"}};
+constexpr KeySpec motion[] = {{"end", required}, {"times"}};
 constexpr KeySpec visibility[] = {{"camera"}, {"bounces"}, {"shadows"}};
 
 constexpr ObjectSpec specs[] = {{"scene", scene},
@@ -63,9 +91,30 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"filter.triangle", filter_triangle},
                                 {"filter.gaussian", filter_gaussian},
                                 {"spectrum", spectrum},
+                                {"texture_reference", texture_reference},
+                                {"texture.constant", texture_constant},
+                                {"texture.image", texture_image},
+                                {"texture.checkerboard", texture_checkerboard},
+                                {"texture.scale", texture_scale},
+                                {"texture.mix", texture_mix},
+                                {"texture.coordinate", texture_coordinate},
+                                {"texture.facing", texture_facing},
+                                {"texture.dots", texture_dots},
+                                {"texture.fbm", texture_noise},
+                                {"texture.wrinkled", texture_noise},
+                                {"texture.windy", texture_windy},
+                                {"texture.marble", texture_marble},
+                                {"mapping.uv", mapping_uv},
+                                {"mapping.spherical", mapping_in_space},
+                                {"mapping.cylindrical", mapping_in_space},
+                                {"mapping.planar", mapping_planar},
+                                {"mapping.point", mapping_in_space},
                                 {"material.diffuse", material_diffuse},
                                 {"material.rough", material_rough},
                                 {"material.coated", material_coated},
+                                {"material.layered", material_layered},
+                                {"material.diffuse_transmission", material_diffuse_transmission},
+                                {"material.mix", material_mix},
                                 {"material.conductor", material_conductor},
                                 {"material.dielectric", material_dielectric},
                                 {"material.smooth", material_smooth},
@@ -87,9 +136,13 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"light.spot", light_spot},
                                 {"light.directional", light_directional},
                                 {"light.environment", light_environment},
+                                {"light.goniometric", light_goniometric},
+                                {"light.projection", light_projection},
                                 {"light.sky", light_sky},
                                 {"camera.perspective", camera_perspective},
                                 {"camera.orthographic", camera_orthographic},
+                                {"camera.spherical", camera_spherical},
+                                {"motion", motion},
                                 {"visibility", visibility}};
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "scenes/native/components.h"
 #include "scenes/native/spectra.h"
 #include "systems/light_rows.h"
+#include "systems/portal.h"
 
 namespace metamer {
 namespace {
@@ -19,14 +20,18 @@ struct Photometry {
 };
 struct Brightness {
   std::string_view type, radiometric;
+  std::string_view radiometric_total;     // of the whole shape; may be none
   std::array<Photometry, 3> photometric;  // those without a key are none
 };
 constexpr Brightness brightnesses[] = {
-    {"area", "radiance", {{{"luminance", 1}, {"nits", 1}, {"lumens", 1}}}},  // lumens: see Light::is_power
-    {"environment", "radiance", {{{"luminance", 1}, {"nits", 1}, {}}}},
-    {"point", "intensity", {{{"candela", 1}, {"lumens", 1 / (4 * std::numbers::pi)}, {}}}},
-    {"spot", "intensity", {{{"candela", 1}, {"lumens", 1}, {}}}},  // lumens: divided by the cone's flux
-    {"directional", "irradiance", {{{"lux", 1}, {}, {}}}},
+    {"area", "radiance", "power", {{{"luminance", 1}, {"nits", 1}, {"lumens", 1}}}},  // see Light::is_power
+    {"environment", "radiance", "", {{{"luminance", 1}, {"nits", 1}, {}}}},
+    {"point", "intensity", "", {{{"candela", 1}, {"lumens", 1 / (4 * std::numbers::pi)}, {}}}},
+    {"spot", "intensity", "", {{{"candela", 1}, {"lumens", 1}, {}}}},  // lumens: divided by the cone's flux
+    // Of a direction where the image is white; lumens: divided by what the image lets out.
+    {"goniometric", "intensity", "", {{{"candela", 1}, {"lumens", 1}, {}}}},
+    {"projection", "intensity", "", {{{"candela", 1}, {"lumens", 1}, {}}}},
+    {"directional", "irradiance", "", {{{"lux", 1}, {}, {}}}},
 };
 
 const Brightness& brightness_of(std::string_view type) {
@@ -56,16 +61,18 @@ SpectrumId read_brightness(SceneContext& context, const JsonObject& object, Colo
   std::vector<std::string_view> keys = {ways.radiometric};
   for (const Photometry& photometry : ways.photometric)
     if (!photometry.key.empty()) keys.push_back(photometry.key);
-  const bool is_image = object.type() == "environment" && object.has("image");
+  const std::string_view first_photometric = keys[1];
+  if (!ways.radiometric_total.empty()) keys.push_back(ways.radiometric_total);
+  const bool is_image = object.has("image");
   bool has_any = false;
   for (const std::string_view key : keys) has_any = has_any || object.has(key);
   const Json::Value* shape = object.find("spectrum");
   const std::string_view way = is_image && !has_any ? std::string_view() : object.one_of(keys);
-  if (way.empty() || way == ways.radiometric) {
+  if (way.empty() || way == ways.radiometric || way == ways.radiometric_total) {
     if (shape != nullptr)
-      context.reader.error(
-          *shape, fmt::format("'spectrum' is the shape for '{}'; a spectrum in absolute units goes to '{}'", keys[1],
-                              ways.radiometric));
+      context.reader.error(*shape,
+                           fmt::format("'spectrum' is the shape for '{}'; a spectrum in absolute units goes to '{}'",
+                                       first_photometric, way.empty() ? ways.radiometric : way));
     return way.empty() ? white_of(context, space) : read_spectrum(context, *object.find(way), way, Quantity::light);
   }
   double per_unit = 1;
@@ -78,13 +85,14 @@ SpectrumId read_brightness(SceneContext& context, const JsonObject& object, Colo
   return context.reader.diagnostics().error_count() == errors_before ? normalized(context, *shape, id, target) : id;
 }
 
-void read_environment_image(SceneContext& context, const JsonObject& object, ColorSpace space, Light& light) {
+void read_light_image(SceneContext& context, const JsonObject& object, ColorSpace space, Light& light) {
   constexpr std::string_view mappings[] = {"latitude_longitude", "equal_area"};  // in the order of ImageMapping
   const JsonReader& reader = context.reader;
-  const auto mapping = static_cast<ImageMapping>(object.choice("mapping", mappings, 0));
+  const bool is_sphere = light.kind == LightKind::environment || light.kind == LightKind::goniometric;
+  const auto mapping = static_cast<ImageMapping>(is_sphere ? object.choice("mapping", mappings, 0) : 0);
   if (!object.has("image")) {
-    for (const std::string_view key : {"mapping", "space"})
-      if (object.has(key)) reader.error(*object.find(key), fmt::format("'{}' goes with 'image' only", key));
+    if (is_sphere && object.has("mapping")) reader.error(*object.find("mapping"), "'mapping' goes with 'image' only");
+    if (object.has("space")) reader.error(*object.find("space"), "'space' goes with 'image' only");
     return;
   }
   const Json::Value& value = *object.find("image");
@@ -103,10 +111,31 @@ void read_environment_image(SceneContext& context, const JsonObject& object, Col
   context.scene.images.push_back(std::move(image));
 }
 
+void read_portal(SceneContext& context, const JsonObject& object, Light& light) {
+  const Json::Value* value = object.find("portal");
+  if (value == nullptr) return;
+  const JsonReader& reader = context.reader;
+  if (!reader.array(*value, "portal", "four points [x, y, z]")) return;
+  if (value->size() != 4) return reader.error(*value, fmt::format("'portal' has {} points; expected 4", value->size()));
+  glm::dvec3 corners[4];
+  const size_t errors_before = reader.diagnostics().error_count();
+  for (Json::ArrayIndex i = 0; i < 4; ++i)
+    corners[i] = reader.vector((*value)[i], "portal", {0, 0, 0}) * context.metres_per_unit;
+  if (reader.diagnostics().error_count() != errors_before) return;
+  const std::string_view mistake = set_portal(corners, light);
+  if (!mistake.empty()) reader.error(*value, fmt::format("'portal': {}", mistake));
+}
+
+// What the lumens of a light are divided by: its flux per unit of intensity.
+double flux_of(const SceneContext& context, const Light& light) {
+  if (light.image == no_index) return flux_per_unit(abstract_light(glm::dmat4(1), light));
+  return image_weight(light, context.scene.images[light.image]);
+}
+
 // Half angles in degrees. Where the falloff starts is Mitsuba's default, three quarters of the cone.
 void read_cone(const JsonReader& reader, const JsonObject& object, Light& light) {
-  light.cone_deg = object.number_f("cone_angle", {0, 90, true, false}, 30);
-  light.falloff_deg = object.number_f("falloff_start", {0, 90}, 0.75f * light.cone_deg);
+  light.cone_deg = object.number_f("cone_angle", {0, 180, true, false}, 30);
+  light.falloff_deg = object.number_f("falloff_start", {0, 180}, 0.75f * light.cone_deg);
   if (light.falloff_deg <= light.cone_deg) return;
   reader.error(*object.find("falloff_start"),
                fmt::format("'falloff_start' is {:g}; expected at most the 'cone_angle', {:g}", light.falloff_deg,
@@ -128,20 +157,32 @@ void read_light(SceneContext& context, Entity entity, const Json::Value& value) 
     light.kind = LightKind::area;
     light.two_sided = object.boolean("two_sided", false) ? 1 : 0;
     light.cosine_power = object.number_f("cosine_power", {0, 1e6}, 0);
-    light.is_power = object.has("lumens") ? 1 : 0;
+    light.is_power = object.has("lumens") || object.has("power") ? 1 : 0;
+    space = static_cast<ColorSpace>(object.choice("space", color_space_names(), 0));
+    read_light_image(context, object, space, light);
   } else if (object.type() == "point") {
     light.kind = LightKind::point;
   } else if (object.type() == "spot") {
     light.kind = LightKind::spot;
     read_cone(context.reader, object, light);
-    if (object.has("lumens")) flux_per_lumen_unit = flux_per_unit(abstract_light(glm::dmat4(1), light));
+    if (object.has("lumens")) flux_per_lumen_unit = flux_of(context, light);
   } else if (object.type() == "directional") {
     light.kind = LightKind::directional;
     light.angular_diameter_deg = object.number_f("angular_diameter", {0, 180, false, true}, 0);
   } else {
-    light.kind = LightKind::environment;
+    light.kind = object.type() == "goniometric"  ? LightKind::goniometric
+                 : object.type() == "projection" ? LightKind::projection
+                                                 : LightKind::environment;
     space = static_cast<ColorSpace>(object.choice("space", color_space_names(), 0));
-    read_environment_image(context, object, space, light);
+    if (light.kind == LightKind::projection) light.fov_deg = object.number_f("fov", {0, 180, true, true}, 90);
+    read_light_image(context, object, space, light);
+    if (light.kind == LightKind::environment) read_portal(context, object, light);
+    if (light.kind != LightKind::environment && light.image == no_index) return;  // reported
+    if (object.has("lumens")) flux_per_lumen_unit = flux_of(context, light);
+    if (!(flux_per_lumen_unit > 0)) {
+      context.reader.error(*object.find("image"), "'image' is black: it lets no 'lumens' out");
+      flux_per_lumen_unit = 1;
+    }
   }
   light.spectrum = read_brightness(context, object, space);
   light.scale = static_cast<float>(light.scale / flux_per_lumen_unit);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "scenes/native/components.h"
 #include "scenes/native/spectra.h"
 #include "systems/bsdf/limits.h"
@@ -15,12 +17,26 @@ void read_roughness(const SceneContext& context, const JsonObject& object, Mater
   if (value == nullptr) return;
   std::array<double, 2> alpha{};
   if (value->isArray()) {
-    context.reader.numbers(*value, "roughness", unit_interval, alpha);
+    context.reader.numbers(*value, "roughness", not_negative, alpha);
   } else {
-    alpha.fill(context.reader.number(*value, "roughness", unit_interval, 0));
+    alpha.fill(context.reader.number(*value, "roughness", not_negative, 0));
   }
   material.alpha_x = static_cast<float>(alpha[0]);
   material.alpha_y = static_cast<float>(alpha[1]);
+}
+
+// A spectrum, or a texture in its place.
+void read_albedo(SceneContext& context, const JsonObject& object, std::string_view key, SpectrumId& spectrum,
+                 TextureId& texture) {
+  const Json::Value* value = object.find(key);
+  if (value == nullptr) return;  // reported
+  if (is_texture(*value))
+    texture = read_texture_reference(context, *value, false).value_or(no_index);
+  else
+    spectrum = read_spectrum(context, *value, key, Quantity::reflectance);
+}
+void read_reflectance(SceneContext& context, const JsonObject& object, Material& material) {
+  read_albedo(context, object, "reflectance", material.reflectance, material.reflectance_texture);
 }
 
 // Both terms may be left out; the glossy one needs its exponent.
@@ -103,13 +119,52 @@ Material mirror(SpectrumSet& spectra) {
 }
 
 void read_coated(SceneContext& context, const JsonObject& object, Material& material) {
-  if (object.has("reflectance"))
-    material.reflectance = read_spectrum(context, *object.find("reflectance"), "reflectance", Quantity::reflectance);
+  read_reflectance(context, object, material);
   constexpr std::string_view ways[] = {"glass", "eta"};
   const std::string_view way = object.one_of(ways);
   if (way == "glass") material.eta = read_glass(context, *object.find("glass"));
   if (way == "eta") material.eta = read_spectrum(context, *object.find("eta"), "eta", Quantity::eta);
-  material.alpha_x = material.alpha_y = static_cast<float>(object.number("roughness", unit_interval, 0));
+  material.alpha_x = material.alpha_y = static_cast<float>(object.number("roughness", not_negative, 0));
+}
+
+void read_sheet(SceneContext& context, const JsonObject& object, Material& material) {
+  material.kind = MaterialKind::diffuse_transmission;
+  read_reflectance(context, object, material);
+  read_albedo(context, object, "transmittance", material.transmittance, material.transmittance_texture);
+}
+
+// Of two entries of "materials".
+void read_mix(SceneContext& context, const JsonObject& object, Material& material) {
+  material.kind = MaterialKind::mix;
+  const auto part = [&](std::string_view key) -> Entity {
+    const Json::Value* value = object.find(key);
+    if (value == nullptr) return {};
+    const std::string name = context.reader.text(*value, key);
+    const auto found = context.entities.find(name);
+    if (found != context.entities.end()) return found->second.entity;
+    if (!name.empty())
+      context.reader.error(*value, fmt::format("unknown material '{}'{}", printable_text(name),
+                                               did_you_mean_key(name, context.entities)));
+    return {};
+  };
+  material.mix.first = part("first");
+  material.mix.second = part("second");
+  material.mix.amount = static_cast<float>(object.number("amount", unit_interval, 0.5));
+}
+
+// pbrt's coat.
+void read_layered(SceneContext& context, const JsonObject& object, Material& material) {
+  constexpr uint32_t deepest = 1000000;
+  material.kind = MaterialKind::layered;
+  read_reflectance(context, object, material);
+  constexpr std::string_view ways[] = {"glass", "eta"};
+  const std::string_view way = object.one_of(ways);
+  if (way == "glass") material.eta = read_glass(context, *object.find("glass"));
+  if (way == "eta") material.eta = read_spectrum(context, *object.find("eta"), "eta", Quantity::eta);
+  read_roughness(context, object, material);
+  Layer& layer = material.layer;
+  layer.thickness = static_cast<float>(object.number("optical_thickness", not_negative, double{layer.thickness}));
+  layer.max_depth = object.integer("max_depth", 0, deepest, layer.max_depth);
 }
 
 }  // namespace
@@ -120,8 +175,7 @@ std::optional<Material> read_material(SceneContext& context, const Json::Value& 
   Material material;
   if (object.type() == "diffuse") {
     material.kind = MaterialKind::diffuse;
-    if (object.has("reflectance"))
-      material.reflectance = read_spectrum(context, *object.find("reflectance"), "reflectance", Quantity::reflectance);
+    read_reflectance(context, object, material);
     return material;
   }
   if (object.type() == "rough") {
@@ -134,6 +188,14 @@ std::optional<Material> read_material(SceneContext& context, const Json::Value& 
     return material;
   }
   if (object.type() == "mirror") return mirror(context.scene.spectra);
+  using Read = void (*)(SceneContext&, const JsonObject&, Material&);
+  constexpr std::pair<std::string_view, Read> others[] = {
+      {"layered", read_layered}, {"diffuse_transmission", read_sheet}, {"mix", read_mix}};
+  for (const auto& [type, read] : others)
+    if (object.type() == type) {
+      read(context, object, material);
+      return material;
+    }
   material.fresnel = static_cast<FresnelModel>(object.choice("fresnel", fresnel_names, 0));
   if (object.type() == "coated") {
     material.kind = MaterialKind::coated;

@@ -1,5 +1,6 @@
 #include "scenes/native/read_native.h"
 
+#include "scenes/gzip.h"
 #include "scenes/native/components.h"
 #include "scenes/native/entities.h"
 #include "scenes/native/settings.h"
@@ -21,6 +22,7 @@ void read_scene_object(SceneContext& context, const Json::Value& root) {
   context.metres_per_unit = metres[object.choice("units", units, 0)];
   if (const Json::Value* settings = object.find("settings")) context.scene.settings = read_settings(context, *settings);
   if (const Json::Value* spectra = object.find("spectra")) declare_spectra(context, *spectra);
+  if (const Json::Value* textures = object.find("textures")) read_textures(context, *textures);
   if (const Json::Value* meshes = object.find("meshes")) read_meshes(context, *meshes);
   if (const Json::Value* materials = object.find("materials")) read_materials(context, *materials);
   if (const Json::Value* media = object.find("media")) read_media(context, *media);
@@ -32,7 +34,8 @@ void read_scene_object(SceneContext& context, const Json::Value& root) {
 
 bool read_native(const std::string& path, Scene& scene, Diagnostics& diagnostics) {
   FileBytes bytes;
-  return read_file(path, {path, 0}, bytes, diagnostics) && read_native(path, std::move(bytes), scene, diagnostics);
+  return read_packed_file(path, {path, 0}, bytes, diagnostics) &&
+         read_native(path, std::move(bytes), scene, diagnostics);
 }
 
 bool read_native(const std::string& path, FileBytes bytes, Scene& scene, Diagnostics& diagnostics) {

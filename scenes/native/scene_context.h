@@ -1,7 +1,9 @@
 // What the parts of the native reader share while one file is read.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
+#include <tuple>
 
 #include "engine/ecs/scene.h"
 #include "scenes/native/json_reader.h"
@@ -42,9 +44,12 @@ struct SceneContext {
   NameId file;
   double metres_per_unit = 1;
   std::map<std::string, NamedSpectrum> spectra;
-  std::map<std::string, MeshId> meshes;         // of the file's "meshes"
-  std::map<std::string, MeshId> mesh_files;     // by resolved path: a file is read once
-  std::map<std::string, NamedEntity> entities;  // materials too
+  std::map<std::string, MeshId> meshes;       // of the file's "meshes"
+  std::map<std::string, MeshId> mesh_files;   // by resolved path: a file is read once
+  std::map<std::string, TextureId> textures;  // those read so far
+  std::string texture_being_read;
+  std::map<std::tuple<std::string, double, ColorSpace>, std::optional<ImageId>> images;  // by path, gamma and space
+  std::map<std::string, NamedEntity> entities;                                           // materials too
   std::map<std::string, Entity> media;
 
   float metres(double length) const { return static_cast<float>(length * metres_per_unit); }

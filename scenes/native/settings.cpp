@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include "engine/film/bands.h"
+#include "scenes/native/transforms.h"
 
 namespace metamer {
 namespace {
-
-constexpr Range filter_radius{0.5, 16};  // pixels; below 0.5 parts of the picture would be seen by no pixel
 
 Filter read_filter(const SceneContext& context, const Json::Value& value) {
   const JsonObject object(context.reader, value, "filter");
@@ -20,14 +19,13 @@ Filter read_filter(const SceneContext& context, const Json::Value& value) {
   std::array<double, 2> radius{usual, usual};
   if (const Json::Value* given = object.find("radius")) {
     if (given->isArray())
-      context.reader.numbers(*given, "radius", filter_radius, radius);
+      context.reader.numbers(*given, "radius", positive, radius);
     else
-      radius.fill(context.reader.number(*given, "radius", filter_radius, usual));
+      radius.fill(context.reader.number(*given, "radius", positive, usual));
   }
   filter.radius_x = static_cast<float>(radius[0]);
   filter.radius_y = static_cast<float>(radius[1]);
-  constexpr Range sigma{0.01, 16};
-  if (filter.kind == FilterKind::gaussian) filter.sigma = object.number_f("sigma", sigma, filter.sigma);
+  if (filter.kind == FilterKind::gaussian) filter.sigma = object.number_f("sigma", positive, filter.sigma);
   return filter;
 }
 
@@ -39,6 +37,15 @@ uint32_t read_band_count(const SceneContext& context, const Json::Value& value) 
   return 0;
 }
 
+glm::dvec4 read_crop(const SceneContext& context, const Json::Value& value) {
+  constexpr Range fraction{0, 1};
+  std::array<double, 4> crop{0, 1, 0, 1};
+  context.reader.numbers(value, "crop", fraction, crop);
+  if (crop[0] < crop[1] && crop[2] < crop[3]) return {crop[0], crop[1], crop[2], crop[3]};
+  context.reader.expected(value, "crop", "[x_min, x_max, y_min, y_max], each minimum below its maximum");
+  return {0, 1, 0, 1};
+}
+
 }  // namespace
 
 RenderSettings read_settings(const SceneContext& context, const Json::Value& value) {
@@ -47,7 +54,7 @@ RenderSettings read_settings(const SceneContext& context, const Json::Value& val
   RenderSettings settings;
   if (!object.is_valid()) return settings;
   if (const Json::Value* size = object.find("size")) {
-    constexpr uint32_t most = 65536;  // pixels along a side
+    constexpr uint32_t most = 1u << 20;  // pixels along a side
     if (size->isArray() && size->size() == 2) {
       settings.width = reader.integer((*size)[0], "size[0]", 1, most, settings.width);
       settings.height = reader.integer((*size)[1], "size[1]", 1, most, settings.height);
@@ -57,7 +64,7 @@ RenderSettings read_settings(const SceneContext& context, const Json::Value& val
   }
   constexpr Range stops{-64, 64};
   settings.samples_per_pixel = object.integer("samples", 1, 1u << 30, settings.samples_per_pixel);
-  settings.max_depth = object.integer("max_depth", 0, 1u << 16, settings.max_depth);
+  settings.max_depth = object.integer("max_depth", 0, 0xffffffffu, settings.max_depth);
   settings.integrator =
       static_cast<Integrator>(object.choice("integrator", integrator_names, static_cast<size_t>(settings.integrator)));
   settings.shadows = object.boolean("shadows", settings.shadows);
@@ -66,6 +73,13 @@ RenderSettings read_settings(const SceneContext& context, const Json::Value& val
   settings.sensor_scale = object.number_f("sensor_scale", positive, settings.sensor_scale);
   if (const Json::Value* spectral = object.find("spectral")) settings.band_count = read_band_count(context, *spectral);
   settings.color = static_cast<ColorMode>(object.choice("color", color_mode_names(), 0));
+  if (const Json::Value* crop = object.find("crop")) settings.crop = read_crop(context, *crop);
+  if (const Json::Value* shutter = object.find("shutter")) {
+    const glm::dvec2 times = read_times(reader, *shutter, "shutter");
+    settings.shutter_open = times.x;
+    settings.shutter_close = times.y;
+  }
+  settings.pixel_jitter = object.boolean("pixel_jitter", settings.pixel_jitter);
   if (const Json::Value* filter = object.find("filter")) settings.filter = read_filter(context, *filter);
   return settings;
 }

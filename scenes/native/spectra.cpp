@@ -11,7 +11,8 @@
 namespace metamer {
 namespace {
 
-constexpr std::string_view forms[] = {"constant", "table", "named", "blackbody", "daylight", "rgb"};
+constexpr std::string_view forms[] = {"constant", "table", "named",   "blackbody",
+                                      "daylight", "rgb",   "samples", "sigmoid"};
 
 const Range& range_of(Quantity quantity) {
   switch (quantity) {
@@ -64,6 +65,8 @@ class SpectrumReader {
     scale_ = object.number("scale", not_negative, 1);
     if (object.has("space") && form != "rgb" && !form.empty())
       reader_.error(*object.find("space"), "'space' belongs to 'rgb' only");
+    if (object.has("times") && form != "sigmoid" && !form.empty())
+      reader_.error(*object.find("times"), "'times' belongs to 'sigmoid' only");
     const SpectrumId id = form.empty() ? zero_spectrum : read_form(object, form);
     return scale_ == 1 ? id : checked(value, set_.scaled(id, scale_));
   }
@@ -97,6 +100,8 @@ class SpectrumReader {
     if (form == "table") return table(value);
     if (form == "named") return named(value);
     if (form == "rgb") return rgb(object, value);
+    if (form == "samples") return samples(value);
+    if (form == "sigmoid") return sigmoid(object, value);
     constexpr Range kelvin{0, 1e9, true};
     constexpr Range daylight_kelvin{4000, 25000};
     if (form == "blackbody") {
@@ -127,6 +132,30 @@ class SpectrumReader {
     if (reader_.diagnostics().error_count() != errors_before) return zero_spectrum;
     return checked(value,
                    set_.add_table(lambda_nm, values, quantity_ == Quantity::light ? Extend::zero : Extend::constant));
+  }
+
+  SpectrumId samples(const Json::Value& value) {
+    if (!value.isArray() || value.size() != lambda_count) {
+      reader_.expected(value, "samples",
+                       fmt::format("an array of {} numbers, for {}, {}, ... {} nm", lambda_count, lambda_min_nm,
+                                   lambda_min_nm + 1, lambda_max_nm));
+      return zero_spectrum;
+    }
+    Samples read{};
+    for (Json::ArrayIndex i = 0; i < value.size(); ++i)
+      read[i] = reader_.number(value[i], fmt::format("samples[{}]", i), any_number, 0);
+    return checked(value, set_.add_samples(read));
+  }
+
+  SpectrumId sigmoid(const JsonObject& object, const Json::Value& value) {
+    Color3 coefficients{};
+    if (!reader_.numbers(value, "sigmoid", any_number, coefficients)) return zero_spectrum;
+    const Json::Value* times = object.find("times");
+    if (times == nullptr) return checked(value, set_.add_sigmoid(coefficients, unit_spectrum));
+    const size_t errors_before = reader_.diagnostics().error_count();
+    const SpectrumId factor = SpectrumReader(context_, "times", Quantity::any, is_definition_).read(*times);
+    if (reader_.diagnostics().error_count() != errors_before) return zero_spectrum;
+    return checked(*times, set_.add_sigmoid(coefficients, factor));
   }
 
   SpectrumId rgb(const JsonObject& object, const Json::Value& value) {

@@ -161,10 +161,36 @@ Transform read_transform(const SceneContext& context, const Json::Value* value) 
   bool is_good = true;
   for (Json::ArrayIndex i = 0; i < (is_list ? value->size() : 1); ++i) {
     const Json::Value& item = is_list ? (*value)[i] : *value;
-    total = read_operation(context, item) * total;
+    const glm::dmat4 operation = read_operation(context, item);
+    total = i == 0 ? operation : operation * total;  // a product would turn -0 into 0
     is_good = is_good && check_invertible(context, item, total);
   }
   return reader.diagnostics().error_count() == errors_before ? to_component(total) : Transform{};
+}
+
+glm::dvec2 read_times(const JsonReader& reader, const Json::Value& value, std::string_view what) {
+  constexpr Range seconds{-1e6, 1e6};
+  std::array<double, 2> times{0, 1};
+  if (!reader.numbers(value, what, seconds, times)) return {0, 1};
+  if (static_cast<float>(times[0]) < static_cast<float>(times[1])) return {times[0], times[1]};
+  reader.expected(value, what, "[first, second] in seconds, the second after the first");
+  return {0, 1};
+}
+
+Motion read_motion(const SceneContext& context, const Json::Value& value) {
+  const JsonObject object(context.reader, value, *find_object_spec("motion"), "motion");
+  Motion motion;
+  if (!object.is_valid()) return motion;
+  const Transform end = read_transform(context, object.find("end"));
+  motion.row0 = end.row0;
+  motion.row1 = end.row1;
+  motion.row2 = end.row2;
+  if (const Json::Value* times = object.find("times")) {
+    const glm::dvec2 seconds = read_times(context.reader, *times, "times");
+    motion.start_time = static_cast<float>(seconds.x);
+    motion.end_time = static_cast<float>(seconds.y);
+  }
+  return motion;
 }
 
 Transform mirrored_z(const Transform& then) {

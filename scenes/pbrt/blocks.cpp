@@ -67,7 +67,7 @@ void object_instance(Reader& reader, Tokenizer& tokens, std::string_view directi
   const auto name = read_string(reader, tokens, directive, source);
   if (!name) return;
   if (reader.object) return reader.messages.error(source, "ObjectInstance inside ObjectBegin");
-  reader.instances.push_back({*name, reader.state.transform, source});
+  reader.instances.push_back({*name, reader.state.transforms(), source});
 }
 
 void reverse_orientation(Reader& reader, Tokenizer&, std::string_view, Source) {
@@ -77,9 +77,9 @@ void reverse_orientation(Reader& reader, Tokenizer&, std::string_view, Source) {
 void world_begin(Reader& reader, Tokenizer&, std::string_view, Source source) {
   default_camera(reader, source);
   reader.in_world = true;
-  reader.state.transform = glm::dmat4(1.0);
-  reader.state.start_time_active = true;
-  reader.coordinate_systems["world"] = reader.state.transform;
+  reader.state.transform = reader.state.end_transform = glm::dmat4(1.0);
+  reader.state.start_time_active = reader.state.end_time_active = true;
+  reader.coordinate_systems["world"] = {};
 }
 
 void world_end(Reader& reader, Tokenizer&, std::string_view, Source source) {

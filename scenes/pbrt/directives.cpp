@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 namespace metamer::pbrt {
 namespace {
@@ -53,17 +52,6 @@ void area_light_source(Reader& reader, std::string_view kind, Parameters& parame
 
 void material(Reader& reader, std::string_view kind, Parameters& parameters) {
   reader.state.material = read_material(reader, kind, parameters, reader.scene.registry.create());
-}
-
-// Materials may be used before they are made; the entity is the same.
-NamedMaterial& named_material(Reader& reader, const std::string& name, Source source) {
-  const auto [entry, fresh] = reader.materials.try_emplace(name);
-  if (fresh) {
-    const Entity entity = reader.scene.registry.create();
-    reader.scene.registry.set(entity, Name{reader.scene.names.add(name)});
-    entry->second = {entity, source, false};
-  }
-  return entry->second;
 }
 
 void make_named_material(Reader& reader, std::string_view name, Parameters& parameters) {
@@ -141,27 +129,10 @@ void color_space(Reader& reader, Tokenizer& tokens, std::string_view directive, 
   }
 }
 
-void option(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
-  const auto name = read_string(reader, tokens, directive, source);
-  if (!name) return;
-  if (tokens.peek().kind == TokenKind::end || looks_like_directive(tokens.peek())) {
-    return reader.messages.error(source, fmt::format("Option \"{}\" has no value", *name));
-  }
-  const Token value = tokens.next();
-  const auto number = parse_number(value.text);
-  if (*name == "seed" && number && *number >= 0 && *number <= std::numeric_limits<int32_t>::max()) {
-    reader.scene.settings.seed = static_cast<uint32_t>(*number);
-  } else if (*name == "seed") {
-    reader.messages.error(source, fmt::format("Option \"seed\" expects a non-negative integer, not {}", show(value)));
-  } else {
-    reader.messages.warning_once("option " + *name, source,
-                                 fmt::format("Option \"{}\" is not supported; it changes nothing", *name));
-  }
-}
-
 void accelerator(Reader& reader, std::string_view, Parameters& parameters) {
   parameters.ignore_the_rest();
-  reader.messages.note_once("accelerator", parameters.source(), parameters.what() + ": Embree's is always used");
+  reader.messages.note_once("accelerator", parameters.source(), parameters.what() + ": Embree's is always used",
+                            Strict::allows);
 }
 
 constexpr auto directives = std::to_array<Directive>({
@@ -185,7 +156,7 @@ constexpr auto directives = std::to_array<Directive>({
     {"ObjectBegin", Where::in_world, object_begin},
     {"ObjectEnd", Where::in_world, object_end},
     {"ObjectInstance", Where::in_world, object_instance},
-    {"Option", Where::before_world, option},
+    {"Option", Where::before_world, read_option},
     {"PixelFilter", Where::before_world, plain<read_filter>},
     {"ReverseOrientation", Where::in_world, reverse_orientation},
     {"Sampler", Where::before_world, plain<read_sampler>},

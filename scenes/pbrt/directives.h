@@ -15,6 +15,9 @@ void transform_end(Reader& reader, Tokenizer& tokens, std::string_view directive
 void object_begin(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source);
 void object_end(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source);
 void object_instance(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source);
+// options.cpp
+void read_option(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source);
+
 void reverse_orientation(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source);
 void world_begin(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source);
 void world_end(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source);

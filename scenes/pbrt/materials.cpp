@@ -1,10 +1,10 @@
 // Materials, and the entities that carry them.
+#include "scenes/pbrt/materials.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "scenes/pbrt/reader.h"
 
 namespace metamer::pbrt {
 namespace {
@@ -13,18 +13,24 @@ constexpr std::string_view material_kinds[] = {
     "diffuse", "conductor", "dielectric", "coateddiffuse", "coatedconductor", "diffusetransmission",
     "hair",    "interface", "measured",   "mix",           "subsurface",      "thindielectric"};
 
-// GGX widths along u and v. pbrt's remapping of roughness to alpha is a square root.
+// Of materials whose widths may be textures.
 void read_roughness(Reader& reader, Parameters& parameters, Material& material) {
-  const double both = read_real_or_texture(reader, parameters, "roughness", 0);
+  const NumberOrTexture both = read_number_or_texture(reader, parameters, "roughness", 0);
   const bool remap = parameters.boolean("remaproughness", true);
-  if (both < 0) parameters.error("roughness", "roughness must not be negative");
-  const auto alpha = [&](std::string_view name) {
-    const double roughness = read_real_or_texture(reader, parameters, name, both);
-    if (roughness < 0 && parameters.has(name)) parameters.error(name, "roughness must not be negative");
-    return static_cast<float>(remap ? std::sqrt(std::max(roughness, 0.0)) : std::max(roughness, 0.0));
+  if (both.number < 0) parameters.error("roughness", "roughness must not be negative");
+  const auto read = [&](std::string_view name, float& alpha, TextureId& texture) {
+    const NumberOrTexture own =
+        parameters.has(name) ? read_number_or_texture(reader, parameters, name, both.number) : both;
+    if (own.number < 0 && parameters.has(name)) parameters.error(name, "roughness must not be negative");
+    const double roughness = std::max(own.number, 0.0);
+    alpha = static_cast<float>(remap ? std::sqrt(roughness) : roughness);
+    texture = remap && own.texture != no_index ? square_root_of(reader, own.texture) : own.texture;
   };
-  material.alpha_x = alpha("uroughness");
-  material.alpha_y = alpha("vroughness");
+  read("uroughness", material.alpha_x, material.alpha_x_texture);
+  if (both.texture != no_index && !parameters.has("uroughness") && !parameters.has("vroughness"))
+    material.alpha_y_texture = material.alpha_x_texture;
+  else
+    read("vroughness", material.alpha_y, material.alpha_y_texture);
 }
 
 SpectrumId spectrum_or(const std::optional<SpectrumValue>& value, SpectrumId fallback) {
@@ -33,13 +39,7 @@ SpectrumId spectrum_or(const std::optional<SpectrumValue>& value, SpectrumId fal
 
 void read_diffuse(Reader& reader, Parameters& parameters, Material& material) {
   material.kind = MaterialKind::diffuse;
-  material.reflectance = reader.scene.spectra.add_constant(0.5).id;
-  if (parameters.is_texture("reflectance")) {
-    material.reflectance_texture = read_texture_parameter(reader, parameters, "reflectance", false).value_or(no_index);
-    return;
-  }
-  const auto reflectance = read_spectrum(reader, parameters, "reflectance", RgbKind::albedo, SpectrumAlso::texture);
-  material.reflectance = spectrum_or(reflectance, material.reflectance);
+  read_reflectance(reader, parameters, material);
 }
 
 // pbrt's inversion: eta = 1 and k = 2 sqrt(R) / sqrt(1 - R), whose reflectance at normal incidence is R.
@@ -53,63 +53,30 @@ SpectrumId kappa_of_reflectance(SpectrumSet& spectra, SpectrumId reflectance) {
 }
 
 void read_conductor(Reader& reader, Parameters& parameters, Material& material) {
-  SpectrumSet& spectra = reader.scene.spectra;
   material.kind = MaterialKind::conductor;
-  const auto eta = read_spectrum(reader, parameters, "eta", RgbKind::unbounded, SpectrumAlso::texture);
-  const auto kappa = read_spectrum(reader, parameters, "k", RgbKind::unbounded, SpectrumAlso::texture);
-  const auto reflectance = read_spectrum(reader, parameters, "reflectance", RgbKind::albedo, SpectrumAlso::texture);
-  if (reflectance && (eta || kappa)) {
-    parameters.error("reflectance", "'reflectance' and 'eta' or 'k' exclude each other");
-  }
-  if (reflectance) {
+  if (parameters.is_texture("reflectance")) {
+    for (const std::string_view name : {"eta", "k"})
+      if (parameters.has(name)) parameters.error(name, fmt::format("'reflectance' and '{}' exclude each other", name));
+    material.reflectance_texture = read_texture_parameter(reader, parameters, "reflectance", false).value_or(no_index);
     material.eta = unit_spectrum;
-    material.kappa = kappa_of_reflectance(spectra, reflectance->id);
   } else {
-    material.eta = spectrum_or(eta, spectra.add_named("metal-Cu-eta").value_or(unit_spectrum));
-    material.kappa = spectrum_or(kappa, spectra.add_named("metal-Cu-k").value_or(zero_spectrum));
+    const MetalIndex metal = read_metal(reader, parameters, "");
+    material.eta = metal.eta;
+    material.kappa = metal.kappa;
   }
   read_roughness(reader, parameters, material);
 }
 
-void read_index(Reader& reader, Parameters& parameters, Material& material) {
-  SpectrumSet& spectra = reader.scene.spectra;
-  const auto eta = read_spectrum(reader, parameters, "eta", RgbKind::unbounded, SpectrumAlso::texture_or_real);
-  material.eta = spectrum_or(eta, spectra.add_constant(1.5).id);
-  if (spectra.min_value(material.eta) > 0) return;
-  parameters.error("eta", "an index of refraction must be positive");
-  material.eta = spectra.add_constant(1.5).id;
-}
-
 void read_dielectric(Reader& reader, Parameters& parameters, Material& material) {
   material.kind = MaterialKind::dielectric;
-  read_index(reader, parameters, material);
+  material.eta = read_index(reader, parameters, "eta");
   read_roughness(reader, parameters, material);
 }
 
 void read_thin_dielectric(Reader& reader, Parameters& parameters, Material& material) {
   material.kind = MaterialKind::dielectric;
-  read_index(reader, parameters, material);
+  material.eta = read_index(reader, parameters, "eta");
   material.thin = 1;
-}
-
-// Our coat has no thickness; pbrt's absorbs along its way through the layer.
-void read_coated_diffuse(Reader& reader, Parameters& parameters, Material& material) {
-  read_diffuse(reader, parameters, material);
-  material.kind = MaterialKind::coated;
-  read_index(reader, parameters, material);
-  read_roughness(reader, parameters, material);
-  reader.messages.warning_once(
-      "coateddiffuse", parameters.source(),
-      "material \"coateddiffuse\": its layer has no thickness here and absorbs nothing, and all "
-      "internal reflections count; it looks lighter than pbrt's");
-  for (const std::string_view name : {"thickness", "g", "albedo"})
-    parameters.unsupported(name, "the layer has no thickness and scatters nothing");
-  for (const std::string_view name : {"maxdepth", "nsamples"}) parameters.unsupported(name, "the sum is exact");
-  if (material.alpha_x != material.alpha_y)
-    reader.messages.warning_once("anisotropic coat", parameters.source(),
-                                 "material \"coateddiffuse\": its roughness is the same in every direction here, the "
-                                 "geometric mean of the two");
-  material.alpha_x = material.alpha_y = std::sqrt(material.alpha_x * material.alpha_y);
 }
 
 void read_unsupported(Reader& reader, std::string_view kind, Parameters& parameters, Material& material) {
@@ -128,6 +95,66 @@ void read_unsupported(Reader& reader, std::string_view kind, Parameters& paramet
 
 }  // namespace
 
+Widths read_widths(Reader& reader, Parameters& parameters, std::string_view prefix, double fallback) {
+  const auto name_of = [&](std::string_view name) { return std::string(prefix).append(name); };
+  const std::string both_name = name_of("roughness");
+  const double both = read_real_or_texture(reader, parameters, both_name, fallback);
+  const bool remap = parameters.boolean("remaproughness", true);
+  if (both < 0) parameters.error(both_name, "roughness must not be negative");
+  const auto alpha = [&](const std::string& name) {
+    const double roughness = read_real_or_texture(reader, parameters, name, both);
+    if (roughness < 0 && parameters.has(name)) parameters.error(name, "roughness must not be negative");
+    return static_cast<float>(remap ? std::sqrt(std::max(roughness, 0.0)) : std::max(roughness, 0.0));
+  };
+  Widths widths;
+  widths.alpha_x = alpha(name_of("uroughness"));
+  widths.alpha_y = alpha(name_of("vroughness"));
+  return widths;
+}
+
+void read_reflectance(Reader& reader, Parameters& parameters, Material& material) {
+  material.reflectance = reader.scene.spectra.add_constant(0.5).id;
+  if (parameters.is_texture("reflectance")) {
+    material.reflectance_texture = read_texture_parameter(reader, parameters, "reflectance", false).value_or(no_index);
+    return;
+  }
+  const auto reflectance = read_spectrum(reader, parameters, "reflectance", RgbKind::albedo, SpectrumAlso::texture);
+  material.reflectance = spectrum_or(reflectance, material.reflectance);
+}
+
+SpectrumId read_index(Reader& reader, Parameters& parameters, std::string_view name) {
+  SpectrumSet& spectra = reader.scene.spectra;
+  const SpectrumId fallback = spectra.add_constant(1.5).id;
+  const auto eta = read_spectrum(reader, parameters, name, RgbKind::unbounded, SpectrumAlso::texture_or_real);
+  const SpectrumId index = spectrum_or(eta, fallback);
+  if (spectra.min_value(index) > 0) return index;
+  parameters.error(name, "an index of refraction must be positive");
+  return fallback;
+}
+
+MetalIndex read_metal(Reader& reader, Parameters& parameters, std::string_view prefix) {
+  SpectrumSet& spectra = reader.scene.spectra;
+  const std::string eta_name = std::string(prefix).append("eta"), k_name = std::string(prefix).append("k");
+  const auto eta = read_spectrum(reader, parameters, eta_name, RgbKind::unbounded, SpectrumAlso::texture);
+  const auto kappa = read_spectrum(reader, parameters, k_name, RgbKind::unbounded, SpectrumAlso::texture);
+  const auto reflectance = read_spectrum(reader, parameters, "reflectance", RgbKind::albedo, SpectrumAlso::texture);
+  if (reflectance && (eta || kappa))
+    parameters.error("reflectance", fmt::format("'reflectance' and '{}' or '{}' exclude each other", eta_name, k_name));
+  if (reflectance) return {unit_spectrum, kappa_of_reflectance(spectra, reflectance->id)};
+  return {spectrum_or(eta, spectra.add_named("metal-Cu-eta").value_or(unit_spectrum)),
+          spectrum_or(kappa, spectra.add_named("metal-Cu-k").value_or(zero_spectrum))};
+}
+
+NamedMaterial& named_material(Reader& reader, const std::string& name, Source source) {
+  const auto [entry, fresh] = reader.materials.try_emplace(name);
+  if (fresh) {
+    const Entity entity = reader.scene.registry.create();
+    reader.scene.registry.set(entity, Name{reader.scene.names.add(name)});
+    entry->second = {entity, source, false};
+  }
+  return entry->second;
+}
+
 Entity read_material(Reader& reader, std::string_view kind, Parameters& parameters, Entity entity) {
   Material material;
   if (kind == "diffuse") {
@@ -138,6 +165,10 @@ Entity read_material(Reader& reader, std::string_view kind, Parameters& paramete
     read_dielectric(reader, parameters, material);
   } else if (kind == "coateddiffuse") {
     read_coated_diffuse(reader, parameters, material);
+  } else if (kind == "diffusetransmission") {
+    read_diffuse_transmission(reader, parameters, material);
+  } else if (kind == "mix") {
+    read_mix(reader, parameters, material);
   } else if (kind == "thindielectric") {
     read_thin_dielectric(reader, parameters, material);
   } else if (kind == "interface" || kind == "none" || kind.empty()) {
@@ -146,8 +177,7 @@ Entity read_material(Reader& reader, std::string_view kind, Parameters& paramete
   } else {
     read_unsupported(reader, kind, parameters, material);
   }
-  parameters.unsupported("displacement", "the surface stays as it is");
-  parameters.unsupported("normalmap", "the surface stays as it is");
+  read_bump(reader, parameters, material);
   reader.scene.registry.set(entity, material);
   reader.scene.registry.set(entity, parameters.source());
   return entity;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "scenes/meshes/loop_subdivision.h"
 #include "scenes/meshes/read_mesh.h"
 
 namespace metamer::pbrt {
@@ -141,10 +142,29 @@ std::optional<ReadMesh> read_triangle_mesh(Reader& reader, Parameters& parameter
   return add_mesh(reader, parameters, std::move(mesh), 1);
 }
 
+// pbrt's normals point to the side from which the control triangles run clockwise, and so does the shape's outside.
+std::optional<ReadMesh> read_loop_mesh(Reader& reader, Parameters& parameters) {
+  Mesh control, mesh;
+  const auto levels = static_cast<uint32_t>(parameters.integer("levels", 3, 0));
+  parameters.string("scheme", "loop");
+  const size_t errors = parameters.messages().diagnostics.error_count();
+  control.positions = to_vec3(parameters.array("P", ParameterType::point3, 3));
+  control.indices = read_indices(parameters, control.positions.size(), 3);
+  if (!parameters.has("P")) parameters.error("P", "'P', the positions, is missing");
+  const SourceLocation at = parameters.messages().at(parameters.source());
+  if (parameters.messages().diagnostics.error_count() != errors ||
+      !validate_mesh(control, at, reader.messages.diagnostics) ||
+      !subdivide_loop(control, levels, at, mesh, reader.messages.diagnostics))
+    return std::nullopt;
+  for (glm::vec3& normal : mesh.normals) normal = -normal;
+  mesh.name = place_name(reader, parameters.source());
+  return add_mesh(reader, parameters, std::move(mesh), 1);
+}
+
 std::optional<ReadMesh> read_bilinear_mesh(Reader& reader, Parameters& parameters) {
   Mesh patches, mesh;
   mesh.name = place_name(reader, parameters.source());
-  parameters.unsupported("emissionfilename", "the light emits evenly");
+  parameters.string("emissionfilename", "");  // where pbrt looks for light: it changes its noise only
   if (!read_vertices(parameters, patches, 4) || !validate_patches(parameters, patches)) return std::nullopt;
   bool all_flat = true;
   for (size_t i = 0; i < patches.indices.size(); i += 4)

@@ -13,6 +13,7 @@ struct ReadMesh {
 
 // Nothing after reporting why.
 std::optional<ReadMesh> read_triangle_mesh(Reader& reader, Parameters& parameters);
+std::optional<ReadMesh> read_loop_mesh(Reader& reader, Parameters& parameters);
 std::optional<ReadMesh> read_bilinear_mesh(Reader& reader, Parameters& parameters);
 std::optional<ReadMesh> read_ply_mesh(Reader& reader, Parameters& parameters);
 

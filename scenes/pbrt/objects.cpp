@@ -10,18 +10,38 @@
 namespace metamer::pbrt {
 namespace {
 
-void place(Reader& reader, const Instance& instance, const ShapeRecord& shape, NameId name) {
-  const glm::dmat4 transform = instance.transform * shape.transform;
-  const std::string_view mistake = transform_mistake(transform);
-  if (!mistake.empty()) {
-    return reader.messages.error(instance.source, fmt::format("the transformation of this instance is {}", mistake));
+// Shapes that move, or are in an object that does, are children of an entity of its own for the instance.
+struct Placed {
+  const Instance& instance;
+  NameId name;
+  Entity node = {};
+};
+
+void place(Reader& reader, Placed& placed, const ShapeRecord& shape) {
+  const TransformPair &outer = placed.instance.transforms, &inner = shape.transforms;
+  const TransformPair both{outer.start * inner.start, outer.end * inner.end};
+  for (const glm::dmat4& transform : {both.start, both.end}) {
+    const std::string_view mistake = transform_mistake(transform);
+    if (mistake.empty()) continue;
+    return reader.messages.error(placed.instance.source,
+                                 fmt::format("the transformation of this instance is {}", mistake));
   }
   Registry& registry = reader.scene.registry;
   const Entity entity = registry.create();
-  registry.set(entity, to_component(transform));
+  if (!outer.moves() && !inner.moves()) {
+    set_place(reader, entity, both);
+  } else {
+    if (placed.node.is_null()) {
+      placed.node = registry.create();
+      set_place(reader, placed.node, outer);
+      registry.set(placed.node, placed.instance.source);
+    }
+    set_place(reader, entity, inner);
+    registry.set(entity, Parent{placed.node});
+  }
   registry.set(entity, shape.geometry);
   registry.set(entity, shape.source);
-  registry.set(entity, Name{name});
+  registry.set(entity, Name{placed.name});
   if (!shape.material.is_null()) registry.set(entity, MaterialSlot{shape.material});
   if (separates(shape.media)) registry.set(entity, shape.media);
 }
@@ -38,8 +58,8 @@ void place_instances(Reader& reader) {
                                                          did_you_mean(instance.object, known)));
       continue;
     }
-    const NameId name = reader.scene.names.add(instance.object);
-    for (const ShapeRecord& shape : object->second) place(reader, instance, shape, name);
+    Placed placed{instance, reader.scene.names.add(instance.object)};
+    for (const ShapeRecord& shape : object->second) place(reader, placed, shape);
   }
 }
 

@@ -258,8 +258,8 @@ std::string Parameters::string(std::string_view name, std::string_view fallback)
   return std::string(fallback);
 }
 
-glm::dvec3 Parameters::point3(std::string_view name, glm::dvec3 fallback) {
-  const Parameter* parameter = find(name, ParameterType::point3);
+glm::dvec3 Parameters::triple(std::string_view name, ParameterType type, glm::dvec3 fallback) {
+  const Parameter* parameter = find(name, type);
   if (parameter == nullptr) return fallback;
   if (parameter->numbers.size() == 3) return {parameter->numbers[0], parameter->numbers[1], parameter->numbers[2]};
   error(name, fmt::format("'{}' expects three numbers, not {}", name, parameter->numbers.size()));

@@ -58,8 +58,8 @@ struct Messages {
   void warning_once(const std::string& kind, Source source, std::string message) {
     if (said.insert(kind).second) warning(source, std::move(message));
   }
-  void note_once(const std::string& kind, Source source, std::string message) {
-    if (said.insert(kind).second) note(source, std::move(message));
+  void note_once(const std::string& kind, Source source, std::string message, Strict strict = Strict::refuses) {
+    if (said.insert(kind).second) diagnostics.note(at(source), std::move(message), strict);
   }
 };
 
@@ -87,7 +87,12 @@ class Parameters {
   int integer(std::string_view name, int fallback, int least);
   bool boolean(std::string_view name, bool fallback);
   std::string string(std::string_view name, std::string_view fallback);
-  glm::dvec3 point3(std::string_view name, glm::dvec3 fallback);
+  glm::dvec3 point3(std::string_view name, glm::dvec3 fallback) {
+    return triple(name, ParameterType::point3, fallback);
+  }
+  glm::dvec3 vector3(std::string_view name, glm::dvec3 fallback) {
+    return triple(name, ParameterType::vector3, fallback);
+  }
   // All values of an array parameter, a multiple of `per_item`; empty if absent or broken.
   std::span<const double> array(std::string_view name, ParameterType type, size_t per_item);
 
@@ -106,6 +111,7 @@ class Parameters {
 
  private:
   const Parameter* lookup(std::string_view name);
+  glm::dvec3 triple(std::string_view name, ParameterType type, glm::dvec3 fallback);
 
   std::string what_;
   Source source_;

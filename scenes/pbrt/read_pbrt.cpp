@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "scenes/file_bytes.h"
+#include "scenes/gzip.h"
 #include "scenes/pbrt/reader.h"
 
 namespace metamer {
@@ -28,7 +28,6 @@ std::string include_mistake(const Reader& reader, const std::filesystem::path& p
 std::string_view encoding_mistake(std::string_view text) {
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
     return "UTF-16 is not supported; save the file as UTF-8";
-  if (text.starts_with("\x1f\x8b")) return "compressed scene files are not supported yet; decompress it with gunzip";
   return {};
 }
 
@@ -81,7 +80,7 @@ void read_scene_file(Reader& reader, const std::string& path, Source named_at) {
   const std::string mistake = include_mistake(reader, canonical);
   if (!mistake.empty()) return reader.messages.error(named_at, mistake);
   FileBytes bytes;
-  if (!read_file(path, reader.messages.at(named_at), bytes, reader.messages.diagnostics)) return;
+  if (!read_packed_file(path, reader.messages.at(named_at), bytes, reader.messages.diagnostics)) return;
   const NameId outer_file = reader.file;
   reader.file = reader.scene.names.add(path);
   const std::string_view encoding = encoding_mistake(bytes.text());

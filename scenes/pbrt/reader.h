@@ -21,7 +21,8 @@ struct AreaLight {
   bool on = false;
   SpectrumId spectrum = 0;
   double scale = 1;   // includes the division by the spectrum's luminance
-  double power = -1;  // per shape, in pbrt's sense; negative: not given
+  double power = -1;  // per shape, in pbrt's sense, over the image's mean; negative: not given
+  ImageId image = no_index;
   bool two_sided = false;
 };
 
@@ -29,9 +30,17 @@ struct AreaLight {
 inline constexpr std::string_view attribute_targets[] = {"shape", "light", "material", "medium", "texture"};
 enum class AttributeTarget : uint8_t { shape, light, material, medium, texture };
 
+// The current transformation at the start and at the end of the motion (TransformTimes).
+struct TransformPair {
+  glm::dmat4 start{1.0}, end{1.0};
+  bool moves() const { return start != end; }
+};
+
 struct GraphicsState {
-  glm::dmat4 transform{1.0};  // object to world; before WorldBegin world to camera
-  bool start_time_active = true;
+  glm::dmat4 transform{1.0};  // object to world; before WorldBegin world to camera; at the motion's start
+  glm::dmat4 end_transform{1.0};
+  bool start_time_active = true, end_time_active = true;
+  TransformPair transforms() const { return {transform, end_transform}; }
   bool reverse_orientation = false;
   ColorSpace color_space = ColorSpace::srgb;
   Entity material;
@@ -63,7 +72,7 @@ struct NamedMedium {
 // A shape as it was said, not yet an entity: ObjectInstance makes several of one.
 struct ShapeRecord {
   Geometry geometry;
-  glm::dmat4 transform;
+  TransformPair transforms;
   Entity material;
   MediumSlot media;
   Source source;
@@ -71,7 +80,7 @@ struct ShapeRecord {
 
 struct Instance {
   std::string object;
-  glm::dmat4 transform;
+  TransformPair transforms;
   Source source;
 };
 
@@ -85,7 +94,8 @@ struct Reader {
   GraphicsState state = {};
   std::vector<SavedState> stack = {};
   bool in_world = false;
-  std::map<std::string, glm::dmat4> coordinate_systems = {};
+  std::map<std::string, TransformPair> coordinate_systems = {};
+  double motion_start = 0, motion_end = 1;  // seconds
   std::map<std::string, NamedMaterial> materials = {};
   std::map<std::string, NamedMedium> media = {};
   std::vector<Entity> interface_materials = {};
@@ -116,8 +126,12 @@ void read_scene_file(Reader& reader, const std::string& path, Source named_at);
 
 // transforms.cpp. False: `directive` is not one of these.
 bool read_transform_directive(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source);
+// Gives the entity its Transform and, if it moves, its Motion.
+void set_place(Reader& reader, Entity entity, const TransformPair& transforms);
+// A light where the current transformation moves: it stands as at the start, which is said once.
+void report_moving_light(Reader& reader, Source source);
 
-// settings.cpp. `kind` is the string after the directive.
+// settings.cpp, film.cpp. `kind` is the string after the directive.
 void read_camera(Reader& reader, std::string_view kind, Parameters& parameters);
 void read_film(Reader& reader, std::string_view kind, Parameters& parameters);
 void read_filter(Reader& reader, std::string_view kind, Parameters& parameters);
@@ -143,6 +157,18 @@ std::optional<TextureId> read_texture(Reader& reader, std::string_view kind, Par
 std::optional<TextureId> read_texture_parameter(Reader& reader, Parameters& parameters, std::string_view name,
                                                 bool is_number);
 
+// A "float" parameter, or the texture in its place. A texture that is wrong has been reported.
+struct NumberOrTexture {
+  double number = 0;
+  TextureId texture = no_index;
+};
+NumberOrTexture read_number_or_texture(Reader& reader, Parameters& parameters, std::string_view name, double fallback);
+// `alpha` of a shape; nothing: opaque.
+TextureId read_alpha(Reader& reader, Parameters& parameters);
+TextureId square_root_of(Reader& reader, TextureId texture);
+// `displacement` and `normalmap` of a material.
+void read_bump(Reader& reader, Parameters& parameters, Material& material);
+
 // materials.cpp
 Entity read_material(Reader& reader, std::string_view kind, Parameters& parameters, Entity entity);
 
@@ -153,6 +179,8 @@ void use_media(Reader& reader, const std::string& inside, const std::string& out
 // Only a slot with two different media matters to rays.
 inline bool separates(const MediumSlot& media) { return media.inside != media.outside; }
 void report_unmade_media(Reader& reader);
+// Materials may be used before they are made; the entity is the same (materials.cpp).
+NamedMaterial& named_material(Reader& reader, const std::string& name, Source source);
 
 // lights.cpp
 void read_light(Reader& reader, std::string_view kind, Parameters& parameters);

@@ -1,9 +1,8 @@
-// What is not in the world: camera, film, filter, sampler, integrator.
+// What is not in the world: camera, sampler, integrator.
 #include <fmt/format.h>
 
 #include <glm/matrix.hpp>
 
-#include "engine/film/bands.h"
 #include "scenes/pbrt/matrix.h"
 #include "scenes/pbrt/reader.h"
 
@@ -28,12 +27,39 @@ glm::vec4 screen_window(Parameters& parameters) {
   return window;
 }
 
+// The time in between is the exposure; what moves is seen all along.
+void read_shutter(Reader& reader, Parameters& parameters) {
+  const double open = parameters.number("shutteropen", 0), close = parameters.number("shutterclose", 1);
+  if (!(close > open)) {
+    return parameters.error("shutterclose", fmt::format("the shutter closes at {} s but opens at {} s", close, open));
+  }
+  reader.exposure_seconds = close - open;
+  reader.scene.settings.shutter_open = open;
+  reader.scene.settings.shutter_close = close;
+}
+
+Camera spherical_camera(Parameters& parameters) {
+  constexpr std::string_view mappings[] = {"equalarea", "equirectangular"};
+  Camera camera{.kind = CameraKind::spherical, .mapping = ImageMapping::equal_area};
+  const std::string mapping = parameters.string("mapping", "equalarea");
+  if (mapping == "equirectangular") {
+    camera.mapping = ImageMapping::latitude_longitude;
+  } else if (mapping != "equalarea") {
+    parameters.error("mapping", fmt::format("there is no mapping \"{}\"{}", mapping, did_you_mean(mapping, mappings)));
+  }
+  // It has no lens and no screen; pbrt takes these, too.
+  for (const std::string_view name : {"lensradius", "focaldistance", "frameaspectratio"}) parameters.number(name, 0);
+  parameters.array("screenwindow", ParameterType::real, 1);
+  return camera;
+}
+
 void add_camera(Reader& reader, const Camera& camera, Source source) {
   if (!reader.camera.is_null()) reader.scene.registry.destroy(reader.camera);
   reader.camera = reader.scene.registry.create();
-  const glm::dmat4 camera_to_world = glm::inverse(reader.state.transform);
+  TransformPair camera_to_world{glm::inverse(reader.state.transform), glm::inverse(reader.state.end_transform)};
+  if (!reader.state.transforms().moves()) camera_to_world.end = camera_to_world.start;
   reader.coordinate_systems["camera"] = camera_to_world;
-  reader.scene.registry.set(reader.camera, to_component(camera_to_world));
+  set_place(reader, reader.camera, camera_to_world);
   reader.scene.registry.set(reader.camera, camera);
   if (!reader.state.media.outside.is_null())
     reader.scene.registry.set(reader.camera, MediumSlot{{}, reader.state.media.outside});
@@ -46,13 +72,22 @@ void add_camera(Reader& reader, const Camera& camera, Source source) {
 void read_camera(Reader& reader, std::string_view kind, Parameters& parameters) {
   Camera camera{.fov_deg = 90, .focal_distance = 1e6f};
   if (!reader.camera.is_null()) reader.messages.error(parameters.source(), "there is more than one Camera");
+  read_shutter(reader, parameters);
   if (kind == "orthographic") {
     camera.kind = CameraKind::orthographic;
-  } else if (kind != "perspective") {
+  } else if (kind == "spherical") {
+    return add_camera(reader, spherical_camera(parameters), parameters.source());
+  } else if (kind == "realistic") {
     parameters.ignore_the_rest();
-    reader.messages.warning(
-        parameters.source(),
-        fmt::format("{} is not supported yet; a perspective camera of 90 degrees is used", parameters.what()));
+    reader.messages.warning(parameters.source(), fmt::format("{} is not supported; a perspective camera of 90 degrees "
+                                                             "is used: give it the lens's 'fov' instead",
+                                                             parameters.what()));
+    return add_camera(reader, camera, parameters.source());
+  } else if (kind != "perspective") {
+    constexpr std::string_view known[] = {"perspective", "orthographic", "spherical", "realistic"};
+    parameters.ignore_the_rest();
+    reader.messages.error(parameters.source(),
+                          fmt::format("there is no Camera \"{}\"{}", kind, did_you_mean(kind, known)));
     return add_camera(reader, camera, parameters.source());
   }
   if (camera.kind == CameraKind::perspective) {
@@ -66,12 +101,6 @@ void read_camera(Reader& reader, std::string_view kind, Parameters& parameters) 
   camera.screen_window = screen_window(parameters);
   camera.lens_radius = static_cast<float>(parameters.number_from("lensradius", 0, 0));
   camera.focal_distance = static_cast<float>(parameters.positive("focaldistance", 1e6));
-  const double open = parameters.number("shutteropen", 0), close = parameters.number("shutterclose", 1);
-  if (close > open) {
-    reader.exposure_seconds = close - open;
-  } else {
-    parameters.error("shutterclose", fmt::format("the shutter closes at {} s but opens at {} s", close, open));
-  }
   add_camera(reader, camera, parameters.source());
 }
 
@@ -79,69 +108,6 @@ void default_camera(Reader& reader, Source source) {
   if (!reader.camera.is_null()) return;
   reader.messages.warning(source, "there is no Camera; a perspective one of 90 degrees is used");
   add_camera(reader, Camera{.fov_deg = 90, .focal_distance = 1e6f}, source);
-}
-
-void read_film(Reader& reader, std::string_view kind, Parameters& parameters) {
-  reader.scene.settings.band_count = 0;  // the last Film counts
-  if (kind == "spectral") {
-    const int buckets = parameters.integer("nbuckets", 16, 1);
-    const double from_nm = parameters.number("lambdamin", 360), to_nm = parameters.number("lambdamax", 830);
-    reader.scene.settings.band_count = std::min(static_cast<uint32_t>(buckets), max_band_count);
-    reader.messages.note_once(
-        "spectral film", parameters.source(),
-        fmt::format("{}: {} bands from {} to {} nm are recorded, not {} from {} to {} nm", parameters.what(),
-                    reader.scene.settings.band_count, band_min_nm, band_max_nm, buckets, from_nm, to_nm));
-  } else if (kind != "rgb") {
-    parameters.ignore_the_rest();
-    reader.messages.warning(
-        parameters.source(),
-        fmt::format("{} is not supported yet; its size and exposure are used, it records R G B", parameters.what()));
-  }
-  reader.scene.settings.width = static_cast<uint32_t>(parameters.integer("xresolution", 1280, 1));
-  reader.scene.settings.height = static_cast<uint32_t>(parameters.integer("yresolution", 720, 1));
-  reader.iso = parameters.positive("iso", 100);
-  if (parameters.string("sensor", "cie1931") != "cie1931") {
-    parameters.unsupported("sensor", "cie1931 is used");
-  }
-  if (parameters.number("whitebalance", 0) != 0) parameters.unsupported("whitebalance", "the picture is not balanced");
-  if (!parameters.string("filename", "").empty()) {
-    reader.messages.note_once("filename", parameters.source(),
-                              "Film's 'filename' is not used: outputs are named after the scene, or by -o");
-  }
-  parameters.unsupported("cropwindow", "the whole picture is rendered");
-  parameters.unsupported("pixelbounds", "the whole picture is rendered");
-  parameters.unsupported("maxcomponentvalue", "samples are not clamped");
-  parameters.number("diagonal", 35);  // only the realistic camera's business
-  parameters.boolean("savefp16", true);
-  if (reader.state.color_space != ColorSpace::srgb) {
-    reader.messages.warning_once(
-        "film space", parameters.source(),
-        fmt::format("pictures in the colour space '{}' are not supported yet; sRGB's primaries are used",
-                    color_space_name(reader.state.color_space)));
-  }
-}
-
-void read_filter(Reader& reader, std::string_view kind, Parameters& parameters) {
-  Filter filter{FilterKind::gaussian, 1.5f, 1.5f, 0.5f};
-  double radius = 1.5;
-  if (kind == "box") {
-    filter.kind = FilterKind::box;
-    radius = 0.5;
-  } else if (kind == "triangle") {
-    filter.kind = FilterKind::triangle;
-    radius = 2;
-  } else if (kind != "gaussian") {
-    parameters.ignore_the_rest();
-    reader.messages.warning(
-        parameters.source(),
-        fmt::format("{} is not supported yet; gaussian of radius 1.5 and sigma 0.5 pixels is used", parameters.what()));
-    reader.scene.settings.filter = filter;
-    return;
-  }
-  filter.radius_x = static_cast<float>(parameters.positive("xradius", radius));
-  filter.radius_y = static_cast<float>(parameters.positive("yradius", radius));
-  if (filter.kind == FilterKind::gaussian) filter.sigma = static_cast<float>(parameters.positive("sigma", 0.5));
-  reader.scene.settings.filter = filter;
 }
 
 void read_sampler(Reader& reader, std::string_view kind, Parameters& parameters) {
@@ -166,16 +132,45 @@ void read_sampler(Reader& reader, std::string_view kind, Parameters& parameters)
   settings.seed = static_cast<uint32_t>(parameters.integer("seed", static_cast<int>(settings.seed), 0));
   reader.messages.note_once(
       "sampler", parameters.source(),
-      fmt::format("{}: its sample count is used; the points are always Owen-scrambled Sobol points",
-                  parameters.what()));
+      fmt::format("{}: its sample count is used; the points are always Owen-scrambled Sobol points", parameters.what()),
+      Strict::allows);
 }
 
+namespace {
+
+// What a file may say, and what is done: nothing else, the same light found in another way, or another picture.
+enum class Instead : uint8_t { nothing, same_light, path };
+struct KnownIntegrator {
+  std::string_view name;
+  Instead instead;
+};
+constexpr KnownIntegrator known_integrators[] = {{"path", Instead::nothing},
+                                                 {"volpath", Instead::nothing},
+                                                 {"simplepath", Instead::nothing},
+                                                 {"simplevolpath", Instead::nothing},
+                                                 {"bdpt", Instead::same_light},
+                                                 {"mlt", Instead::same_light},
+                                                 {"sppm", Instead::same_light},
+                                                 {"lightpath", Instead::same_light},
+                                                 {"randomwalk", Instead::same_light},
+                                                 {"ambientocclusion", Instead::path},
+                                                 {"ao", Instead::path},
+                                                 {"function", Instead::path}};
+
+}  // namespace
+
 void read_integrator(Reader& reader, std::string_view kind, Parameters& parameters) {
-  constexpr std::string_view like_path[] = {"path", "volpath", "simplepath", "simplevolpath"};
-  constexpr std::string_view other[] = {"bdpt", "mlt",     "sppm", "lightpath", "randomwalk", "ambientocclusion",
-                                        "ao",   "function"};
+  const auto* known = std::find_if(std::begin(known_integrators), std::end(known_integrators),
+                                   [&](const KnownIntegrator& i) { return i.name == kind; });
+  if (known == std::end(known_integrators)) {
+    std::vector<std::string_view> all;
+    for (const KnownIntegrator& integrator : known_integrators) all.push_back(integrator.name);
+    reader.messages.error(parameters.source(),
+                          fmt::format("there is no Integrator \"{}\"{}", kind, did_you_mean(kind, all)));
+    return parameters.ignore_the_rest();
+  }
   reader.scene.settings.max_depth = static_cast<uint32_t>(parameters.integer("maxdepth", 5, 0));
-  if (std::find(std::begin(like_path), std::end(like_path), kind) != std::end(like_path)) {
+  if (known->instead == Instead::nothing) {
     parameters.string("lightsampler", "bvh");  // how lights are chosen changes noise only
     parameters.boolean("samplelights", true);
     parameters.boolean("samplebsdf", true);
@@ -183,14 +178,13 @@ void read_integrator(Reader& reader, std::string_view kind, Parameters& paramete
     return;
   }
   parameters.ignore_the_rest();
-  if (std::find(std::begin(other), std::end(other), kind) != std::end(other)) {
-    reader.messages.warning(parameters.source(),
-                            fmt::format("{} is not supported yet; path tracing is used", parameters.what()));
+  if (known->instead == Instead::same_light) {
+    reader.messages.note_once(
+        "integrator", parameters.source(),
+        fmt::format("{} is not supported; path tracing looks for the same light", parameters.what()));
   } else {
-    std::vector<std::string_view> all(std::begin(like_path), std::end(like_path));
-    all.insert(all.end(), std::begin(other), std::end(other));
-    reader.messages.error(parameters.source(),
-                          fmt::format("there is no Integrator \"{}\"{}", kind, did_you_mean(kind, all)));
+    reader.messages.warning(parameters.source(),
+                            fmt::format("{} is not supported; path tracing is used", parameters.what()));
   }
 }
 

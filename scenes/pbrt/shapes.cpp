@@ -70,18 +70,14 @@ double mean_face_area(const Mesh& mesh, const glm::dmat4& transform, size_t tria
 
 std::optional<Shape> read_mesh_shape(Reader& reader, std::string_view kind, Parameters& parameters) {
   std::optional<ReadMesh> read;
-  if (kind == "trianglemesh" || kind == "loopsubdiv") {
+  if (kind == "trianglemesh") {
     read = read_triangle_mesh(reader, parameters);
+  } else if (kind == "loopsubdiv") {
+    read = read_loop_mesh(reader, parameters);
   } else if (kind == "bilinearmesh") {
     read = read_bilinear_mesh(reader, parameters);
   } else {
     read = read_ply_mesh(reader, parameters);
-  }
-  if (kind == "loopsubdiv") {
-    parameters.integer("levels", 3, 0);
-    parameters.string("scheme", "loop");
-    reader.messages.warning_once("loopsubdiv", parameters.source(),
-                                 "Shape \"loopsubdiv\" is not supported yet; its control mesh is rendered");
   }
   if (!read) return std::nullopt;
   Shape shape{{.kind = ShapeKind::mesh, .mesh = read->id}, 0};
@@ -120,15 +116,17 @@ Light to_light(Parameters& parameters, const AreaLight& area_light, double area)
   light.spectrum = area_light.spectrum;
   light.scale = to_light_scale(parameters, scale);
   light.two_sided = area_light.two_sided ? 1 : 0;
+  light.image = area_light.image;
   return light;
 }
 
 }  // namespace
 
 void read_shape(Reader& reader, std::string_view kind, Parameters& parameters) {
-  parameters.unsupported("alpha", "the shape is opaque");
+  const TextureId alpha = read_alpha(reader, parameters);
   std::optional<Shape> shape = read_geometry(reader, kind, parameters);
   if (!shape) return;
+  shape->geometry.alpha_texture = alpha;
   shape->geometry.flip_normal = reader.state.reverse_orientation ? 1 : 0;
   if (reader.object) {
     if (reader.state.area_light.on) {
@@ -136,12 +134,17 @@ void read_shape(Reader& reader, std::string_view kind, Parameters& parameters) {
                                    "shapes of an object emit no light, as in pbrt; this AreaLightSource does nothing");
     }
     reader.objects[*reader.object].push_back(
-        {shape->geometry, reader.state.transform, reader.state.material, reader.state.media, parameters.source()});
+        {shape->geometry, reader.state.transforms(), reader.state.material, reader.state.media, parameters.source()});
     return;
   }
   Registry& registry = reader.scene.registry;
   const Entity entity = registry.create();
-  registry.set(entity, to_component(reader.state.transform));
+  TransformPair transforms = reader.state.transforms();
+  if (reader.state.area_light.on) {
+    report_moving_light(reader, parameters.source());
+    transforms.end = transforms.start;
+  }
+  set_place(reader, entity, transforms);
   registry.set(entity, shape->geometry);
   registry.set(entity, parameters.source());
   if (!reader.state.material.is_null()) registry.set(entity, MaterialSlot{reader.state.material});

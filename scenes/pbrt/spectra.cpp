@@ -20,6 +20,7 @@ bool has_spectrum_prefix(std::string_view name) {
 
 // pbrt calls SF5, SF10 and SF11 glass-F5, -F10 and -F11.
 std::string_view canonical_name(std::string_view name) {
+  if (name == "glass-F5") return "glass-SF5";
   if (name == "glass-F10") return "glass-SF10";
   if (name == "glass-F11") return "glass-SF11";
   return name;

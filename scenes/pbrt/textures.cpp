@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "scenes/images/read_image.h"
-#include "scenes/pbrt/reader.h"
+#include "scenes/pbrt/texture_nodes.h"
 
 namespace metamer::pbrt {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view texture_kinds[] = {"bilerp", "checkerboard", "constant", "directionmix", "dots",
                                               "fbm",    "imagemap",     "marble",   "mix",          "ptex",
                                               "scale",  "windy",        "wrinkled"};
-constexpr std::string_view mapping_kinds[] = {"uv", "spherical", "cylindrical", "planar"};
+constexpr std::string_view pattern_kinds[] = {"bilerp", "dots", "directionmix", "fbm", "wrinkled", "windy", "marble"};
 constexpr std::string_view wrap_kinds[] = {"repeat", "black", "clamp", "octahedralsphere"};
 constexpr std::string_view filter_kinds[] = {"point", "bilinear", "trilinear", "EWA", "ewa"};
 
@@ -20,56 +20,17 @@ bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-// One of the words; an error and the first of them if it is another.
-std::string choice(Parameters& parameters, std::string_view name, std::string_view fallback,
-                   std::span<const std::string_view> words) {
-  const std::string word = parameters.string(name, fallback);
-  if (is_one_of(word, words)) return word;
-  parameters.error(name, fmt::format("there is no {} \"{}\"{}", name, word, did_you_mean(word, words)));
-  return std::string(words.front());
-}
-
-UvMapping read_mapping(Parameters& parameters) {
-  const std::string mapping = choice(parameters, "mapping", "uv", mapping_kinds);
-  if (mapping != "uv") {
-    parameters.unsupported("mapping", "the texture follows the surface's u and v");
-    for (const std::string_view name : {"v1", "v2"}) parameters.find(name, ParameterType::vector3);
-  }
-  UvMapping uv;
-  uv.u_scale = static_cast<float>(parameters.number("uscale", 1));
-  uv.v_scale = static_cast<float>(parameters.number("vscale", 1));
-  uv.u_offset = static_cast<float>(parameters.number("udelta", 0));
-  uv.v_offset = static_cast<float>(parameters.number("vdelta", 0));
-  return uv;
-}
-
-TextureId add(Reader& reader, const Texture& texture) {
-  reader.scene.textures.push_back(texture);
-  return static_cast<TextureId>(reader.scene.textures.size() - 1);
-}
-
 TextureId add_number(Reader& reader, double value) {
   Texture texture;
   texture.is_number = 1;
   texture.value = static_cast<float>(value);
-  return add(reader, texture);
+  return add_texture(reader, texture);
 }
 
 TextureId add_spectrum(Reader& reader, SpectrumId spectrum) {
   Texture texture;
   texture.spectrum = spectrum;
-  return add(reader, texture);
-}
-
-// A parameter of a texture, itself a texture or a value.
-TextureId operand(Reader& reader, Parameters& parameters, std::string_view name, bool is_number, double fallback) {
-  if (parameters.is_texture(name)) {
-    if (const auto id = read_texture_parameter(reader, parameters, name, is_number)) return *id;
-    return add_number(reader, fallback);  // reported
-  }
-  if (is_number) return add_number(reader, parameters.number(name, fallback));
-  const auto value = read_spectrum(reader, parameters, name, RgbKind::albedo, SpectrumAlso::nothing);
-  return add_spectrum(reader, value ? value->id : reader.scene.spectra.add_constant(fallback).id);
+  return add_texture(reader, texture);
 }
 
 ImageEncoding read_encoding(Parameters& parameters) {
@@ -89,21 +50,31 @@ ImageEncoding read_encoding(Parameters& parameters) {
   return encoding;
 }
 
+bool has_extension(const std::string& name, std::string_view extension) {
+  return name.size() > extension.size() &&
+         std::equal(extension.rbegin(), extension.rend(), name.rbegin(),
+                    [](char wanted, char c) { return wanted == (c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c); });
+}
+// pbrt takes the alpha of these files only, and decodes that of PNG like their colours.
+bool is_png(const std::string& name) { return has_extension(name, ".png"); }
+bool may_have_alpha(const std::string& name) { return is_png(name) || has_extension(name, ".exr"); }
+
 // Images are shared by name and encoding.
-std::optional<ImageId> read_shared_image(Reader& reader, Parameters& parameters) {
-  const std::string name = parameters.string("filename", "");
-  const ImageEncoding encoding = read_encoding(parameters);
+std::optional<ImageId> read_shared_image(Reader& reader, Parameters& parameters, std::string_view parameter,
+                                         ImageEncoding encoding) {
+  const std::string name = parameters.string(parameter, "");
   if (name.empty()) {
-    parameters.error("filename", "'string filename' is missing");
+    parameters.error(parameter, fmt::format("'string {}' is missing", parameter));
     return std::nullopt;
   }
+  encoding.decodes_alpha = is_png(name);
+  encoding.allows_negative = true;
   const std::string path = reader.resolve(name);
   const auto [known, fresh] = reader.images.try_emplace({path, encoding.gamma}, std::nullopt);
   if (!fresh) return known->second;
   Image image;
   if (!read_image(path, reader.messages.at(parameters.source()), image, reader.messages.diagnostics, encoding))
     return std::nullopt;
-  image.color_space = reader.state.color_space;
   reader.scene.images.push_back(std::move(image));
   known->second = static_cast<ImageId>(reader.scene.images.size() - 1);
   return known->second;
@@ -113,72 +84,102 @@ std::optional<TextureId> imagemap(Reader& reader, Parameters& parameters, bool i
   Texture texture;
   texture.kind = TextureKind::image;
   texture.is_number = is_number;
-  texture.mapping = read_mapping(parameters);
+  texture.mapping = read_mapping(reader, parameters);
   texture.scale = static_cast<float>(parameters.number("scale", 1));
   texture.invert = parameters.boolean("invert", false);
-  texture.nearest = choice(parameters, "filter", "bilinear", filter_kinds) == "point";
+  texture.nearest = texture_choice(parameters, "filter", "bilinear", filter_kinds) == "point";
   parameters.number("maxanisotropy", 8);
-  const std::string wrap = choice(parameters, "wrap", "repeat", wrap_kinds);
-  if (wrap == "octahedralsphere") parameters.unsupported("wrap", "the image repeats");
-  texture.wrap = wrap == "clamp" ? TextureWrap::clamp : wrap == "black" ? TextureWrap::black : TextureWrap::repeat;
-  const auto image = read_shared_image(reader, parameters);
+  const std::string wrap = texture_choice(parameters, "wrap", "repeat", wrap_kinds);
+  texture.wrap = wrap == "clamp"              ? TextureWrap::clamp
+                 : wrap == "black"            ? TextureWrap::black
+                 : wrap == "octahedralsphere" ? TextureWrap::octahedral
+                                              : TextureWrap::repeat;
+  const auto image = read_shared_image(reader, parameters, "filename", read_encoding(parameters));
   if (!image) return std::nullopt;
   texture.image = *image;
-  return add(reader, texture);
+  const bool has_alpha =
+      may_have_alpha(parameters.string("filename", "")) && !reader.scene.images[*image].alpha.empty();
+  if (is_number && has_alpha) texture.channel = TextureChannel::alpha;
+  return add_texture(reader, texture);
 }
 
 TextureId checkerboard(Reader& reader, Parameters& parameters, bool is_number) {
   Texture texture;
   texture.kind = TextureKind::checkerboard;
   texture.is_number = is_number;
-  texture.mapping = read_mapping(parameters);
-  if (parameters.integer("dimension", 2, 2) != 2)
-    parameters.unsupported("dimension", "the board is that of two dimensions");
-  texture.a = operand(reader, parameters, "tex1", is_number, 1);
-  texture.b = operand(reader, parameters, "tex2", is_number, 0);
-  return add(reader, texture);
+  const auto dimension = parameters.integer("dimension", 2, 2);
+  if (dimension > 3) parameters.error("dimension", fmt::format("expected 2 or 3, not {}", dimension));
+  texture.mapping = dimension == 2 ? read_mapping(reader, parameters) : point_mapping(reader);
+  texture.a = texture_operand(reader, parameters, "tex1", is_number, 1);
+  texture.b = texture_operand(reader, parameters, "tex2", is_number, 0);
+  return add_texture(reader, texture);
 }
 
 TextureId scale(Reader& reader, Parameters& parameters, bool is_number) {
   Texture texture;
   texture.kind = TextureKind::scale;
   texture.is_number = is_number;
-  texture.a = operand(reader, parameters, "tex", is_number, 1);
-  texture.b = operand(reader, parameters, "scale", true, 1);
-  return add(reader, texture);
+  texture.a = texture_operand(reader, parameters, "tex", is_number, 1);
+  texture.b = texture_operand(reader, parameters, "scale", true, 1);
+  return add_texture(reader, texture);
 }
 
 TextureId mix(Reader& reader, Parameters& parameters, bool is_number) {
   Texture texture;
   texture.kind = TextureKind::mix;
   texture.is_number = is_number;
-  texture.a = operand(reader, parameters, "tex1", is_number, 0);
-  texture.b = operand(reader, parameters, "tex2", is_number, 1);
-  texture.amount = operand(reader, parameters, "amount", true, 0.5);
-  return add(reader, texture);
+  texture.a = texture_operand(reader, parameters, "tex1", is_number, 0);
+  texture.b = texture_operand(reader, parameters, "tex2", is_number, 1);
+  texture.amount = texture_operand(reader, parameters, "amount", true, 0.5);
+  return add_texture(reader, texture);
 }
 
 std::optional<TextureId> unsupported(Reader& reader, std::string_view kind, Parameters& parameters) {
   parameters.ignore_the_rest();
-  if (!is_one_of(kind, texture_kinds)) {
+  if (kind != "ptex") {
     reader.messages.error(parameters.source(),
                           fmt::format("there is no texture \"{}\"{}", kind, did_you_mean(kind, texture_kinds)));
     return std::nullopt;
   }
   reader.messages.warning_once(
       fmt::format("texture {}", kind), parameters.source(),
-      fmt::format("texture \"{}\" is not supported yet; what it would colour gets its default value", kind));
+      fmt::format("texture \"{}\" is not supported; what it would colour gets its default value", kind));
   return std::nullopt;
 }
 
 }  // namespace
 
+TextureId add_texture(Reader& reader, const Texture& texture) {
+  reader.scene.textures.push_back(texture);
+  return static_cast<TextureId>(reader.scene.textures.size() - 1);
+}
+
+TextureId texture_operand(Reader& reader, Parameters& parameters, std::string_view name, bool is_number,
+                          double fallback) {
+  if (parameters.is_texture(name)) {
+    if (const auto id = read_texture_parameter(reader, parameters, name, is_number)) return *id;
+    return add_number(reader, fallback);  // reported
+  }
+  if (is_number) return add_number(reader, parameters.number(name, fallback));
+  const auto value = read_spectrum(reader, parameters, name, RgbKind::albedo, SpectrumAlso::nothing);
+  return add_spectrum(reader, value ? value->id : reader.scene.spectra.add_constant(fallback).id);
+}
+
+std::string texture_choice(Parameters& parameters, std::string_view name, std::string_view fallback,
+                           std::span<const std::string_view> words) {
+  const std::string word = parameters.string(name, fallback);
+  if (is_one_of(word, words)) return word;
+  parameters.error(name, fmt::format("there is no {} \"{}\"{}", name, word, did_you_mean(word, words)));
+  return std::string(words.front());
+}
+
 std::optional<TextureId> read_texture(Reader& reader, std::string_view kind, Parameters& parameters, bool is_number) {
-  if (kind == "constant") return operand(reader, parameters, "value", is_number, 1);
+  if (kind == "constant") return texture_operand(reader, parameters, "value", is_number, 1);
   if (kind == "imagemap") return imagemap(reader, parameters, is_number);
   if (kind == "checkerboard") return checkerboard(reader, parameters, is_number);
   if (kind == "scale") return scale(reader, parameters, is_number);
   if (kind == "mix") return mix(reader, parameters, is_number);
+  if (is_one_of(kind, pattern_kinds)) return read_pattern(reader, kind, parameters, is_number);
   return unsupported(reader, kind, parameters);
 }
 
@@ -196,6 +197,35 @@ std::optional<TextureId> read_texture_parameter(Reader& reader, Parameters& para
   reader.messages.error(parameter->source, fmt::format("{}: there is no texture '{}'{}", parameters.what(), wanted,
                                                        did_you_mean(wanted, known)));
   return std::nullopt;
+}
+
+NumberOrTexture read_number_or_texture(Reader& reader, Parameters& parameters, std::string_view name, double fallback) {
+  if (!parameters.is_texture(name)) return {parameters.number(name, fallback), no_index};
+  return {fallback, read_texture_parameter(reader, parameters, name, true).value_or(no_index)};
+}
+
+TextureId read_alpha(Reader& reader, Parameters& parameters) {
+  const NumberOrTexture alpha = read_number_or_texture(reader, parameters, "alpha", 1);
+  return alpha.texture == no_index && alpha.number < 1 ? add_number(reader, alpha.number) : alpha.texture;
+}
+
+TextureId square_root_of(Reader& reader, TextureId texture) {
+  Texture root;
+  root.kind = TextureKind::square_root;
+  root.is_number = 1;
+  root.a = texture;
+  return add_texture(reader, root);
+}
+
+void read_bump(Reader& reader, Parameters& parameters, Material& material) {
+  if (parameters.has("displacement")) {
+    parameters.find("displacement", ParameterType::texture);
+    material.displacement = read_texture_parameter(reader, parameters, "displacement", true).value_or(no_index);
+  }
+  if (!parameters.has("normalmap")) return;
+  ImageEncoding linear;
+  linear.gamma = 1;
+  material.normal_map = read_shared_image(reader, parameters, "normalmap", linear).value_or(no_index);
 }
 
 }  // namespace metamer::pbrt

@@ -37,22 +37,39 @@ std::optional<std::vector<double>> read_numbers(Reader& reader, Tokenizer& token
   return std::nullopt;
 }
 
-void set_transform(Reader& reader, Source source, const std::optional<glm::dmat4>& m, std::string_view undefined) {
-  const std::string_view mistake = m ? transform_mistake(*m) : undefined;
-  if (!mistake.empty()) return reader.messages.error(source, fmt::format("this transformation is {}", mistake));
-  // ActiveTransform EndTime: only what applies when the shutter opens counts as long as nothing moves.
-  if (reader.state.start_time_active) reader.state.transform = *m;
+// Changes what is active with `change`, a function of the old matrix.
+template <class Change>
+void change_transforms(Reader& reader, Source source, const Change& change) {
+  GraphicsState& state = reader.state;
+  std::string_view mistake;
+  const auto change_one = [&](glm::dmat4& transform) {
+    const glm::dmat4 changed = change(transform);
+    const std::string_view wrong = transform_mistake(changed);
+    if (wrong.empty()) transform = changed;
+    if (mistake.empty()) mistake = wrong;
+  };
+  if (state.start_time_active) change_one(state.transform);
+  if (state.end_time_active) change_one(state.end_transform);
+  if (!mistake.empty()) reader.messages.error(source, fmt::format("this transformation is {}", mistake));
+}
+
+void set_transform(Reader& reader, Source source, const glm::dmat4& m) {
+  change_transforms(reader, source, [&](const glm::dmat4&) { return m; });
 }
 
 void concatenate(Reader& reader, Source source, const std::optional<glm::dmat4>& m, std::string_view undefined = "") {
-  std::optional<glm::dmat4> product;
-  if (m) product = reader.state.transform * *m;
-  set_transform(reader, source, product, undefined);
+  if (!m) return reader.messages.error(source, fmt::format("this transformation is {}", undefined));
+  change_transforms(reader, source, [&](const glm::dmat4& old) { return old * *m; });
 }
 
+// Both of its matrices, whatever is active, as in pbrt.
 void coordinate_system_transform(Reader& reader, const std::string& name, Source source) {
   const auto found = reader.coordinate_systems.find(name);
-  if (found != reader.coordinate_systems.end()) return set_transform(reader, source, found->second, "");
+  if (found != reader.coordinate_systems.end()) {
+    reader.state.transform = found->second.start;
+    reader.state.end_transform = found->second.end;
+    return;
+  }
   std::vector<std::string_view> known;
   for (const auto& [key, matrix] : reader.coordinate_systems) known.push_back(key);
   reader.messages.error(source, fmt::format("there is no coordinate system '{}'{}", name, did_you_mean(name, known)));
@@ -65,8 +82,16 @@ void active_transform(Reader& reader, Tokenizer& tokens, Source source) {
                                  fmt::format("ActiveTransform expects All, StartTime or EndTime, not {}", show(token)));
   }
   reader.state.start_time_active = token.text != "EndTime";
-  reader.messages.warning_once("motion", source,
-                               "motion blur is not supported yet; everything stands as when the shutter opens");
+  reader.state.end_time_active = token.text != "StartTime";
+}
+
+void transform_times(Reader& reader, Source source, double start, double end) {
+  if (reader.in_world) reader.messages.error(source, "TransformTimes must stand before WorldBegin");
+  if (!(static_cast<float>(start) < static_cast<float>(end))) {
+    return reader.messages.error(source, fmt::format("the motion ends at {} s but starts at {} s", end, start));
+  }
+  reader.motion_start = start;
+  reader.motion_end = end;
 }
 
 void apply_numbers(Reader& reader, std::string_view directive, Source source, std::span<const double> v) {
@@ -82,10 +107,9 @@ void apply_numbers(Reader& reader, std::string_view directive, Source source, st
   } else if (directive == "ConcatTransform") {
     concatenate(reader, source, from_columns(v));
   } else if (directive == "Transform") {
-    set_transform(reader, source, from_columns(v), "");
+    set_transform(reader, source, from_columns(v));
   } else {
-    reader.messages.warning_once("motion", source,
-                                 "motion blur is not supported yet; everything stands as when the shutter opens");
+    transform_times(reader, source, v[0], v[1]);
   }
 }
 
@@ -103,6 +127,22 @@ constexpr std::array<NumberDirective, 7> number_directives = {{{"LookAt", 9},
 
 }  // namespace
 
+void set_place(Reader& reader, Entity entity, const TransformPair& transforms) {
+  Registry& registry = reader.scene.registry;
+  registry.set(entity, to_component(transforms.start));
+  if (!transforms.moves()) return;
+  const Transform end = to_component(transforms.end);
+  registry.set(entity, Motion{end.row0, end.row1, end.row2, static_cast<float>(reader.motion_start),
+                              static_cast<float>(reader.motion_end)});
+}
+
+void report_moving_light(Reader& reader, Source source) {
+  if (!reader.state.transforms().moves()) return;
+  reader.messages.warning_once("moving light", source,
+                               "lights that move are not supported; they stand as at the start of their motion, as in "
+                               "pbrt");
+}
+
 bool read_transform_directive(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
   for (const NumberDirective& known : number_directives) {
     if (directive != known.name) continue;
@@ -115,12 +155,12 @@ bool read_transform_directive(Reader& reader, Tokenizer& tokens, std::string_vie
     return true;
   }
   if (directive == "Identity") {
-    set_transform(reader, source, glm::dmat4(1.0), "");
+    set_transform(reader, source, glm::dmat4(1.0));
   } else if (directive == "ActiveTransform") {
     active_transform(reader, tokens, source);
   } else if (directive == "CoordinateSystem") {
     if (const auto name = read_string(reader, tokens, directive, source))
-      reader.coordinate_systems[*name] = reader.state.transform;
+      reader.coordinate_systems[*name] = reader.state.transforms();
   } else if (directive == "CoordSysTransform") {
     if (const auto name = read_string(reader, tokens, directive, source))
       coordinate_system_transform(reader, *name, source);

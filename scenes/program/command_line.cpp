@@ -19,12 +19,15 @@ constexpr uint32_t largest_tile = 1024;     // pixels: beyond, a thread's own su
 constexpr uint32_t deepest_path = 65535;    // scattering events
 constexpr float largest_exposure = 100.0f;  // stops: what tone mapping takes
 
+constexpr const char* strict_help = "Warnings and notes are errors, as long as the picture depends on them";
+
 constexpr const char* main_footer = R"(Examples:
   metamer render                                   the default scene
   metamer render cornell-box/scene.pbrt --spp 64   writes cornell-box.exr and cornell-box.png here
   metamer develop cornell-box.exr -o look.png --tonemap agx --exposure auto
   metamer match 500 -o match.png                   the amounts of three lamps that look like 500 nm
   metamer compare cornell-box.json                 what RGB rendering gets wrong
+  metamer convert kitchen/scene.pbrt kitchen.json
   metamer info kitchen.json
   metamer render --help                            all flags of a command
 
@@ -99,6 +102,7 @@ void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
   add_look_flags(*render, texts.look);
   option("--stats", arguments.stats, "STATS.json", "Write times, rays and memory there");
   render->add_flag("--preview-only", arguments.preview_only, "Leave the film's exact sums out of the EXR");
+  render->add_flag("--strict", arguments.strict, strict_help);
   render->add_flag("-q,--quiet", arguments.quiet, "Print nothing but errors");
 }
 
@@ -123,6 +127,7 @@ void add_info(CLI::App& app, InfoArguments& arguments) {
   info->footer(info_footer);
   info->add_option("SCENE", arguments.scene, "pbrt-v4 or metamer JSON file; without one, the default scene")
       ->type_name("");
+  info->add_flag("--strict", arguments.strict, strict_help);
   info->add_flag("--json", arguments.json, "Print JSON");
 }
 
@@ -140,10 +145,11 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
 }
 
 std::string unknown_command(const std::string& word) {
-  return fmt::format("unknown command '{}'{}; there are render, develop, match, metamers, compare, sky and info", word,
-                     word.find('.') != std::string::npos
-                         ? fmt::format(" (did you mean 'metamer render {}'?)", word)
-                         : suggestion(word, {"render", "develop", "match", "metamers", "compare", "sky", "info"}));
+  return fmt::format(
+      "unknown command '{}'{}; there are render, develop, match, metamers, compare, sky, convert and info", word,
+      word.find('.') != std::string::npos
+          ? fmt::format(" (did you mean 'metamer render {}'?)", word)
+          : suggestion(word, {"render", "develop", "match", "metamers", "compare", "sky", "convert", "info"}));
 }
 
 // The argument without a flag, and what it names.
@@ -172,7 +178,7 @@ void note_extras(const CLI::App& app, const CLI::App* command, Mistakes& mistake
   if (has_unknown_flag || unexpected.empty()) return;
   if (command == nullptr)
     mistakes.push_back(unknown_command(unexpected));
-  else if (command->get_name() == "compare")
+  else if (command->get_name() == "compare" || command->get_name() == "convert")
     mistakes.push_back(fmt::format("unexpected argument '{}'", unexpected));
   else if (command->get_name() == "sky")
     mistakes.push_back(fmt::format("unexpected argument '{}': sky takes flags only", unexpected));
@@ -289,6 +295,8 @@ Command parse_command_line(int argc, char** argv) {
   SkyArguments sky_arguments;
   SkyTexts sky_texts;
   add_sky(app, sky_arguments, sky_texts);
+  ConvertArguments convert_arguments;
+  add_convert(app, convert_arguments);
   add_info(app, info_arguments);
   for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
   try {
@@ -317,19 +325,21 @@ Command parse_command_line(int argc, char** argv) {
     parse_metamers(*command, metamers_texts, metamers_arguments, mistakes);
   if (command != nullptr && command->get_name() == "compare")
     parse_compare(*command, compare_texts, compare_arguments, mistakes);
+  if (command != nullptr && command->get_name() == "convert") parse_convert(convert_arguments, mistakes);
   if (command != nullptr && command->get_name() == "sky") parse_sky(*command, sky_texts, sky_arguments, mistakes);
   fail_if_any(mistakes);
   if (wants_version) return ShowVersion{};
   if (command == nullptr)
-    throw Failure(
-        exit_wrong_input,
-        "a command was expected: render, develop, match, metamers, compare, sky or info (metamer --help says more)");
+    throw Failure(exit_wrong_input,
+                  "a command was expected: render, develop, match, metamers, compare, sky, convert or info (metamer "
+                  "--help says more)");
   if (command->get_name() == "render") return render_arguments;
   if (command->get_name() == "develop") return develop_arguments;
   if (command->get_name() == "match") return match_arguments;
   if (command->get_name() == "metamers") return metamers_arguments;
   if (command->get_name() == "compare") return compare_arguments;
   if (command->get_name() == "sky") return sky_arguments;
+  if (command->get_name() == "convert") return convert_arguments;
   return info_arguments;
 }
 

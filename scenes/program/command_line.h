@@ -7,6 +7,7 @@
 
 #include "engine/ecs/scene.h"
 #include "scenes/program/compare_arguments.h"
+#include "scenes/program/convert_arguments.h"
 #include "scenes/program/match_arguments.h"
 #include "scenes/program/sky_arguments.h"
 #include "systems/write_frame.h"
@@ -32,6 +33,7 @@ struct RenderArguments {
   Look look;                        // of the PNG; all but its exposure and threads
   bool automatic_exposure = false;  // of the PNG, instead of the scene's
   bool preview_only = false;
+  bool strict = false;  // what is not supported is an error
   bool quiet = false;
 };
 
@@ -47,6 +49,7 @@ struct DevelopArguments {
 
 struct InfoArguments {
   std::string scene;
+  bool strict = false;
   bool json = false;
 };
 
@@ -58,7 +61,7 @@ struct ShowText {
 };
 
 using Command = std::variant<RenderArguments, DevelopArguments, MatchArguments, MetamersArguments, CompareArguments,
-                             SkyArguments, InfoArguments, ShowVersion, ShowText>;
+                             SkyArguments, ConvertArguments, InfoArguments, ShowVersion, ShowText>;
 
 // Throws Failure (exit 2) with a line for each mistake.
 Command parse_command_line(int argc, char** argv);

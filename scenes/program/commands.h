@@ -16,6 +16,7 @@ int run_match(const MatchArguments& arguments);
 int run_metamers(const MetamersArguments& arguments);
 int run_compare(const CompareArguments& arguments);
 int run_sky(const SkyArguments& arguments);
+int run_convert(const ConvertArguments& arguments);
 int run_info(const InfoArguments& arguments);
 int run_version();
 

@@ -23,7 +23,7 @@ Examples:
   metamer compare cornell-box.json --spp 256 --color lamps -o error.png --map-scale 20
   metamer compare before.exr after.exr -o difference.png)";
 
-constexpr std::array<const char*, 4> scene_flags = {"--color", "--size", "--spp", "--seed"};
+constexpr std::array<const char*, 5> scene_flags = {"--color", "--size", "--spp", "--seed", "--strict"};
 
 void check_inputs(const CLI::App& compare, const CompareArguments& arguments, Mistakes& mistakes) {
   const std::vector<std::string>& inputs = arguments.inputs;
@@ -61,6 +61,8 @@ void add_compare(CLI::App& app, CompareArguments& arguments, CompareTexts& texts
   option("--spp", texts.samples_per_pixel, "N", "Of a scene: samples per pixel");
   option("--seed", texts.seed, "N", "Of a scene: another seed, another noise");
   option("--threads", texts.threads, "N", "Threads; all that there are if not given; changes no pixel");
+  compare->add_flag("--strict", arguments.strict,
+                    "Of a scene: warnings and notes are errors, as long as the picture depends on them");
   compare->add_flag("-q,--quiet", arguments.quiet, "Print the numbers only");
 }
 

@@ -24,6 +24,7 @@ struct CompareArguments {
   // Of a scene only.
   ColorMode color = ColorMode::rgb;  // what spectral is compared with
   std::optional<uint32_t> width, height, samples_per_pixel, seed;
+  bool strict = false;  // what is not supported is an error
   bool is_scene() const { return inputs.size() == 1; }
 };
 

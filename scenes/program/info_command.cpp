@@ -37,6 +37,7 @@ struct SceneInfo {
 
 Counts count_components(const Registry& registry) {
   return {{"Transform", registry.table<Transform>().size()},
+          {"Motion", registry.table<Motion>().size()},
           {"Parent", registry.table<Parent>().size()},
           {"Geometry", registry.table<Geometry>().size()},
           {"Material", registry.table<Material>().size()},
@@ -82,6 +83,7 @@ size_t scene_bytes(const Scene& scene) {
 SceneInfo gather(const LoadedScene& loaded, const BuiltWorld& built) {
   const Scene& scene = loaded.scene;
   const World& world = *built.world;
+  const TileRect rendered = rendered_pixels(scene.settings);
   SceneInfo info;
   info.settings = scene.settings;
   info.entities = scene.registry.entity_count();
@@ -91,14 +93,15 @@ SceneInfo gather(const LoadedScene& loaded, const BuiltWorld& built) {
   info.zero_area_triangles = world.zero_area_triangles;
   info.materials = count_kinds<MaterialKind, 6>(scene.registry.table<Material>().column<&Material::kind>(),
                                                 {"diffuse", "conductor", "dielectric", "rough", "coated", "smooth"});
-  info.lights = count_kinds<LightKind, 5>(scene.registry.table<Light>().column<&Light::kind>(),
-                                          {"area", "point", "spot", "directional", "environment"});
+  info.lights =
+      count_kinds<LightKind, 7>(scene.registry.table<Light>().column<&Light::kind>(),
+                                {"area", "point", "spot", "directional", "environment", "goniometric", "projection"});
   info.light_choices = world.lights.size();
   info.spectra = scene.spectra.size();
   info.images = scene.images.size();
   info.memory = {{"scene", scene_bytes(scene)},
                  {"world", world_bytes(world)},
-                 {"film", film_bytes(scene.settings.width, scene.settings.height, scene.settings.band_count)},
+                 {"film", film_bytes(rendered.width(), rendered.height(), scene.settings.band_count)},
                  {"peak", peak_rss_bytes()}};
   info.load_seconds = loaded.seconds;
   info.build_seconds = built.seconds;
@@ -195,8 +198,8 @@ void print_json(const SceneInfo& info, const std::string& path, const LoadedScen
 
 int run_info(const InfoArguments& arguments) {
   const std::string path = arguments.scene.empty() ? default_scene() : arguments.scene;
-  const LoadedScene loaded = load_scene(path, {}, false);
-  const BuiltWorld built = build_world(loaded, path, false);
+  const LoadedScene loaded = load_scene(path, {}, {false, arguments.strict});
+  const BuiltWorld built = build_world(loaded, path, {false, arguments.strict});
   const SceneInfo info = gather(loaded, built);
   if (arguments.json)
     print_json(info, path, loaded, built);

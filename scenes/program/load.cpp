@@ -47,52 +47,59 @@ size_t bytes_of(const Columns&... columns) {
 }
 
 size_t coated_bytes(const CoatedColumns& c) {
-  return bytes_of(c.reflectance, c.eta, c.alpha, c.schlick, c.first_row, c.row_stride, c.last_pair, c.eta_least,
-                  c.rows_per_eta, c.albedos);
+  return bytes_of(c.reflectance, c.texture, c.eta, c.alpha_x, c.alpha_y, c.thickness, c.hits, c.schlick, c.first_row,
+                  c.row_stride, c.last_pair, c.eta_least, c.rows_per_eta, c.albedos);
 }
 
 }  // namespace
 
-LoadedScene load_scene(const std::string& path, const SceneOverrides& overrides, bool quiet) {
+LoadedScene load_scene(const std::string& path, const SceneOverrides& overrides, Remarks remarks) {
   const Clock::time_point start = Clock::now();
   LoadedScene loaded;
   const bool is_good = read_scene(path, loaded.scene, loaded.diagnostics);
+  if (remarks.strict) loaded.diagnostics.apply_strict();
   if (!is_good || loaded.diagnostics.has_errors()) {
     print_diagnostics(loaded.diagnostics, path);
     throw Failure(exit_wrong_input, "");
   }
-  if (!quiet) print_diagnostics(loaded.diagnostics, path);
+  if (!remarks.quiet) print_diagnostics(loaded.diagnostics, path);
   apply(overrides, loaded.scene.settings);
   loaded.seconds = seconds_since(start);
   return loaded;
 }
 
-BuiltWorld build_world(const LoadedScene& loaded, const std::string& path, bool quiet) {
+BuiltWorld build_world(const LoadedScene& loaded, const std::string& path, Remarks remarks) {
   const Clock::time_point start = Clock::now();
   BuiltWorld built;
   built.world = freeze(loaded.scene, built.diagnostics);
+  if (remarks.strict) built.diagnostics.apply_strict();
   if (built.world == nullptr || built.diagnostics.has_errors()) {
     print_diagnostics(built.diagnostics, path);
     throw Failure(exit_wrong_input, "");
   }
-  if (!quiet) print_diagnostics(built.diagnostics, path);
+  if (!remarks.quiet) print_diagnostics(built.diagnostics, path);
   built.seconds = seconds_since(start);
   return built;
 }
 
 size_t world_bytes(const World& world) {
   const ObjectColumns& o = world.objects;
-  const Environment& e = world.environment;
+  size_t environments = 0;
+  for (const Environment& e : world.environments)
+    environments += bytes_of(e.density.marginal, e.density.conditional, e.density.marginal_guide,
+                             e.density.conditional_guide, e.portal.density.sums);
   return bytes_of(o.kind, o.first_triangle, o.triangle_count, o.shade_kind, o.material, o.first_light, o.placement,
-                  o.visibility) +
-         bytes_of(world.positions, world.normals, world.uvs, world.triangle_vertices, world.placements) +
+                  o.visibility, o.first_key, o.key_count) +
+         bytes_of(world.positions, world.normals, world.uvs, world.triangle_vertices, world.placements,
+                  world.motion_keys, world.camera_keys) +
          coated_bytes(world.smooth_coated) + coated_bytes(world.rough_coated) +
          bytes_of(world.rough.kd, world.rough.ks, world.rough.shininess, world.rough.normalized) +
          bytes_of(world.diffuse.reflectance, world.conductor.eta, world.conductor.kappa, world.conductor.alpha_x,
                   world.conductor.alpha_y, world.conductor.schlick, world.dielectric.eta, world.dielectric.schlick,
                   world.dielectric.dispersive) +
-         bytes_of(world.lights, world.light_choice.cdf, e.texels, e.density.marginal, e.density.conditional,
-                  world.spectra);
+         environments +
+         bytes_of(world.lights, world.image_of_light, world.light_images.rows, world.light_images.texels,
+                  world.light_choice.cdf, world.spectra);
 }
 
 }  // namespace metamer

@@ -15,8 +15,13 @@ struct LoadedScene {
   double seconds = 0;
 };
 
+// What is made of remarks. quiet: they are not printed; strict: they are errors, but for those it allows.
+struct Remarks {
+  bool quiet = false, strict = false;
+};
+
 // Reads a scene and applies the flags. Throws Failure (exit 2) where there are errors, after printing them.
-LoadedScene load_scene(const std::string& path, const SceneOverrides& overrides, bool quiet);
+LoadedScene load_scene(const std::string& path, const SceneOverrides& overrides, Remarks remarks);
 
 struct BuiltWorld {
   std::unique_ptr<World> world;
@@ -24,8 +29,8 @@ struct BuiltWorld {
   double seconds = 0;
 };
 
-// Freezes a scene that was read from `path`. Throws and prints as load_scene; prints warnings unless quiet.
-BuiltWorld build_world(const LoadedScene& loaded, const std::string& path, bool quiet);
+// Freezes a scene that was read from `path`. Throws and prints as load_scene.
+BuiltWorld build_world(const LoadedScene& loaded, const std::string& path, Remarks remarks);
 
 // Memory held by the columns of a world; Embree's trees are not among them.
 size_t world_bytes(const World& world);

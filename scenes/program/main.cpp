@@ -39,6 +39,7 @@ int run(const Command& command, std::chrono::steady_clock::time_point start) {
   if (const auto* metamers = std::get_if<MetamersArguments>(&command)) return run_metamers(*metamers);
   if (const auto* compare = std::get_if<CompareArguments>(&command)) return run_compare(*compare);
   if (const auto* sky = std::get_if<SkyArguments>(&command)) return run_sky(*sky);
+  if (const auto* convert = std::get_if<ConvertArguments>(&command)) return run_convert(*convert);
   if (const auto* info = std::get_if<InfoArguments>(&command)) return run_info(*info);
   return run_version();
 }

@@ -34,6 +34,8 @@ void check_kind(const std::string& path, OutputKind expected, const char* flag) 
 
 }  // namespace
 
+bool is_same_file(const std::string& a, const std::string& b) { return identity(a) == identity(b); }
+
 std::string scene_title(const std::string& scene_path) {
   std::error_code failed;
   const fs::path absolute = fs::absolute(scene_path, failed).lexically_normal();
@@ -59,11 +61,10 @@ void check_outputs(const Outputs& outputs, const std::string& scene_path) {
   std::vector<std::string> files = {outputs.exr, outputs.png};
   if (!outputs.stats.empty()) files.push_back(outputs.stats);
   for (size_t i = 0; i < files.size(); ++i) {
-    if (identity(files[i]) == identity(scene_path))
+    if (is_same_file(files[i], scene_path))
       throw Failure(exit_wrong_input, files[i] + ": is the scene itself, another file was expected for the output");
     for (size_t j = 0; j < i; ++j)
-      if (identity(files[i]) == identity(files[j]))
-        throw Failure(exit_wrong_input, files[i] + ": is named for two outputs");
+      if (is_same_file(files[i], files[j])) throw Failure(exit_wrong_input, files[i] + ": is named for two outputs");
   }
   std::string mistakes;
   for (const std::string& file : files)

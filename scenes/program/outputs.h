@@ -15,6 +15,9 @@ struct Outputs {
 // the folder's name.
 std::string scene_title(const std::string& scene_path);
 
+// Whether two paths name one file, whether or not it exists yet.
+bool is_same_file(const std::string& a, const std::string& b);
+
 // The files named; else named after the scene, in the current folder; where only one picture is named the other goes
 // beside it.
 Outputs choose_outputs(const RenderArguments& arguments, const std::string& scene_path);

@@ -50,6 +50,9 @@ WriteSettings write_settings(const RenderArguments& arguments, const Outputs& ou
                            {"filter", std::string(filter_name(settings.filter.kind))},
                            {"color", std::string(color_mode_name(settings.color))},
                            {exposure_setting, fmt::format("{}", settings.exposure_stops)}};
+  const TileRect rendered = rendered_pixels(settings);
+  if (rendered.width() < settings.width || rendered.height() < settings.height)
+    write.header.window = {rendered.x0, rendered.y0, settings.width, settings.height};
   if (settings.band_count > 0) write.header.settings.emplace_back("spectral", std::to_string(settings.band_count));
   write.look = arguments.look;
   write.look.exposure_stops = settings.exposure_stops;
@@ -80,8 +83,9 @@ void tell_result(const FrameReport& report, bool quiet) {
     fmt::print(stderr, "metamer: warning: {} rays met more than {} interfaces between media and end there\n",
                report.render.counters.lost_rays, most_interfaces);
   const double seconds = report.render.render_seconds;
-  fmt::print(stderr, "metamer: {}x{}, {} samples per pixel in {} on {} thread{} ({} samples/s)\n", settings.width,
-             settings.height, samples_text(report.samples), short_time(seconds), report.render.threads,
+  const TileRect rendered = rendered_pixels(settings);
+  fmt::print(stderr, "metamer: {}x{}, {} samples per pixel in {} on {} thread{} ({} samples/s)\n", rendered.width(),
+             rendered.height(), samples_text(report.samples), short_time(seconds), report.render.threads,
              report.render.threads == 1 ? "" : "s",
              short_count(seconds > 0 ? static_cast<double>(report.samples.total) / seconds : 0));
 }
@@ -106,11 +110,12 @@ void refuse_observer_without_bands(Observer observer, uint32_t band_count) {
 
 // Reads and builds; what was read is given back before the first ray.
 std::unique_ptr<World> make_world(const RenderArguments& arguments, const std::string& path, FrameReport& report) {
-  const LoadedScene loaded = load_scene(path, arguments.overrides, arguments.quiet);
+  const LoadedScene loaded = load_scene(path, arguments.overrides, {arguments.quiet, arguments.strict});
   const RenderSettings& settings = loaded.scene.settings;
-  refuse_frame_without_memory(settings.width, settings.height, settings.band_count, path);
+  const TileRect rendered = rendered_pixels(settings);
+  refuse_frame_without_memory(rendered.width(), rendered.height(), settings.band_count, path);
   refuse_observer_without_bands(arguments.look.observer, settings.band_count);
-  BuiltWorld built = build_world(loaded, path, arguments.quiet);
+  BuiltWorld built = build_world(loaded, path, {arguments.quiet, arguments.strict});
   report.load_seconds = loaded.seconds;
   report.build_seconds = built.seconds;
   return std::move(built.world);
@@ -157,8 +162,9 @@ int run_render(const RenderArguments& arguments, Clock::time_point program_start
   const std::unique_ptr<World> world = make_world(arguments, path, report);
   report.settings = world->settings;
   report.world_bytes = world_bytes(*world);
-  report.film_bytes = film_bytes(world->settings.width, world->settings.height, world->settings.band_count);
-  Film film(world->settings.width, world->settings.height, world->settings.band_count);
+  const TileRect rendered = rendered_pixels(world->settings);
+  report.film_bytes = film_bytes(rendered.width(), rendered.height(), world->settings.band_count);
+  Film film(rendered.width(), rendered.height(), world->settings.band_count);
   save_when_interrupted();
   trace(arguments, *world, film, report, program_start);
   if (report.samples.total == 0) throw Failure(exit_failed, "interrupted before the first pixel; nothing was written");

@@ -36,9 +36,17 @@ double smooth_coat_average(double eta, bool schlick);
 // E of a rough surface; alpha at least least_alpha, to 2e-3.
 double rough_coat_albedo(double alpha, double eta, bool schlick, double cos_theta);
 
+// A surface, and whether a layer as in coat_layer.h is under it, which has an optical thickness.
+struct CoatSurface {
+  double alpha = 0;
+  bool schlick = false;
+  bool layered = false;  // not with schlick
+  double thickness = 0;
+};
+
 // Appends the rows for etas in [eta_least, eta_most], eta_least > 0, to the table: at most 0.02 apart, and at most 64.
 // alpha < smooth_alpha: smooth, rows of the average alone. Largest errors of interpolation: average 2e-5, E 1.5e-3,
 // where the etas are not on both sides of 1.
-CoatRows add_coat_rows(double alpha, bool schlick, double eta_least, double eta_most, Column<float>& table);
+CoatRows add_coat_rows(const CoatSurface& surface, double eta_least, double eta_most, Column<float>& table);
 
 }  // namespace metamer

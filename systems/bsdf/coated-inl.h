@@ -17,6 +17,9 @@
 // E_mean)): 1 for a = 1 whatever the angle, eta and roughness. For a = 1 it is the coupling of Kelemen & Szirmay-Kalos,
 // "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling", Eurographics 2001.
 //
+// pbrt's coat (coat_layer.h) has the same form: A in place of 1 - E, 1 - eta^2 (1 - K) in place of E_mean, and the
+// factor 1 - (a K)^n of a sum that ends after n hits of the base. `hits` is n, negative where there is no end.
+//
 // A dispersing coat needs no choice of a wavelength: directions do not depend on eta.
 //
 // Sampling is a mixture, one for all four wavelengths: with the chance `surface_share`, in proportion to what either
@@ -51,14 +54,16 @@ struct CoatRowsV {
 struct CoatOptics {
   VF albedo[4], eta[4];
   MF schlick;
+  VF thickness, hits;  // of the layer: optical; negative: all
   const float* table;
   CoatRowsV rows;
 };
 
 // What eval and sample share about one viewing direction.
 struct CoatView {
+  VF mirror[4];  // F(wo), smooth surfaces only
   VF enters[4];  // 1 - E(wo)
-  VF body[4];    // a / (pi ((1 - a) eta^2 + a (1 - E_mean)))
+  VF body[4];    // a / (pi ((1 - a) eta^2 + a (1 - E_mean))), what is missing of the sum included
   VF surface_share;
 };
 
@@ -108,6 +113,19 @@ HWY_INLINE void coat_reflectance(const CoatOptics& optics, VF cos_theta, VF refl
 }
 
 namespace bsdf_detail {
+// What of 1 - F at a smooth surface gets through the layer.
+HWY_INLINE void smooth_coat_enters(const CoatOptics& optics, VF cos_theta, const VF reflectance[4], VF enters[4]) {
+  const FloatTag d;
+  for (int j = 0; j < 4; ++j) enters[j] = hn::Sub(splat(1.0f), reflectance[j]);
+  if (hn::AllFalse(d, hn::Gt(optics.thickness, hn::Zero(d)))) return;
+  VF passes[4];
+  for_each_eta(optics, passes, [&](VF eta) {
+    const VF projection = safe_sqrt(transmitted_projection_squared(eta, hn::Min(cos_theta, splat(1.0f))));
+    return exp(hn::Neg(hn::Div(hn::Mul(optics.thickness, eta), hn::Max(projection, splat(1e-20f)))));
+  });
+  for (int j = 0; j < 4; ++j) enters[j] = hn::Mul(enters[j], passes[j]);
+}
+
 // 1 - E of a rough surface, cos_theta in [0, 1].
 HWY_INLINE void rough_coat_enters(const CoatOptics& optics, VF cos_theta, VF enters[4]) {
   const VF zero = hn::Zero(FloatTag()), last = splat(float(coat_nodes - 1));
@@ -132,13 +150,19 @@ HWY_INLINE void complete_coat_view(const CoatOptics& optics, CoatView& view) {
   for_each_eta(optics, enters_mean, [&](VF eta) {
     return hn::Sub(one, coat_between(optics, coat_place(optics.rows, eta), hn::Zero(IntTag())));
   });
+  const MF ends = hn::Ge(optics.hits, zero);
+  const bool any_ends = !hn::AllFalse(d, ends);
   VF surface = zero, body = zero;
   for (int j = 0; j < 4; ++j) {
     const VF a = hn::Min(optics.albedo[j], one);
-    const VF absorbs = hn::Mul(hn::Sub(one, a), hn::Mul(optics.eta[j], optics.eta[j]));
-    const VF denominator = hn::MulAdd(a, enters_mean[j], absorbs);
+    const VF eta2 = hn::Mul(optics.eta[j], optics.eta[j]);
+    const VF denominator = hn::MulAdd(a, enters_mean[j], hn::Mul(hn::Sub(one, a), eta2));
     // 0 only where all is white and nothing enters.
-    const VF ratio = hn::Div(a, hn::Max(denominator, splat(FLT_MIN)));
+    VF ratio = hn::Div(a, hn::Max(denominator, splat(FLT_MIN)));
+    if (any_ends) {
+      const VF again = saturate(hn::NegMulAdd(a, hn::Div(enters_mean[j], eta2), a));  // a K
+      ratio = hn::IfThenElse(ends, hn::NegMulAdd(ratio, pow(again, optics.hits), ratio), ratio);
+    }
     view.body[j] = hn::Mul(ratio, splat(inverse_pi));
     surface = hn::Add(surface, hn::Sub(one, view.enters[j]));
     body = hn::MulAdd(hn::Mul(view.enters[j], ratio), enters_mean[j], body);
@@ -167,9 +191,8 @@ HWY_INLINE void divide_by_pdf(const VF f_cos[4], BsdfSample& sample) {
 // Under a smooth surface. wo.z may have either sign; wo.z = 0 reflects nothing.
 HWY_INLINE CoatView make_smooth_coat_view(const Vec3& wo, const CoatOptics& optics) {
   CoatView view;
-  VF reflectance[4];
-  coat_reflectance(optics, hn::Abs(wo.z), reflectance);
-  for (int j = 0; j < 4; ++j) view.enters[j] = hn::Sub(splat(1.0f), reflectance[j]);
+  coat_reflectance(optics, hn::Abs(wo.z), view.mirror);
+  bsdf_detail::smooth_coat_enters(optics, hn::Abs(wo.z), view.mirror, view.enters);
   bsdf_detail::complete_coat_view(optics, view);
   return view;
 }
@@ -181,12 +204,10 @@ HWY_INLINE void eval_smooth_coat(const Vec3& wo, const CoatView& view, const Coa
   const VF zero = hn::Zero(FloatTag());
   const VF cos_i = hn::Abs(wi.z);
   const MF reflects = hn::Gt(hn::Mul(wo.z, wi.z), zero);
-  VF enters[4];
-  coat_reflectance(optics, cos_i, enters);
-  for (int j = 0; j < 4; ++j) {
-    enters[j] = hn::Sub(splat(1.0f), enters[j]);
-    f_cos[j] = zero;
-  }
+  VF reflectance[4], enters[4];
+  coat_reflectance(optics, cos_i, reflectance);
+  bsdf_detail::smooth_coat_enters(optics, cos_i, reflectance, enters);
+  for (int j = 0; j < 4; ++j) f_cos[j] = zero;
   pdf = zero;
   bsdf_detail::add_coated_body(view, enters, reflects, cos_i, f_cos, pdf);
 }
@@ -210,8 +231,7 @@ HWY_INLINE CoatSample sample_smooth_coat(const Vec3& wo, const CoatView& view, c
   eval_smooth_coat(wo, view, optics, sample.draw.wi, f_cos, pdf_body);
   const VF pdf = hn::IfThenElse(sample.mirrored, view.surface_share, pdf_body);
   sample.draw.pdf = hn::IfThenElseZero(hn::Ne(wo.z, zero), pdf);
-  for (int j = 0; j < 4; ++j)
-    f_cos[j] = hn::IfThenElse(sample.mirrored, hn::Sub(splat(1.0f), view.enters[j]), f_cos[j]);
+  for (int j = 0; j < 4; ++j) f_cos[j] = hn::IfThenElse(sample.mirrored, view.mirror[j], f_cos[j]);
   bsdf_detail::divide_by_pdf(f_cos, sample.draw);
   return sample;
 }
@@ -219,6 +239,7 @@ HWY_INLINE CoatSample sample_smooth_coat(const Vec3& wo, const CoatView& view, c
 // Under a rough surface; `lobe` is that of wo and the coat's alpha, which is at least smooth_alpha.
 HWY_INLINE CoatView make_rough_coat_view(const GgxLobe& lobe, const CoatOptics& optics) {
   CoatView view;
+  for (VF& mirror : view.mirror) mirror = hn::Zero(FloatTag());
   bsdf_detail::rough_coat_enters(optics, lobe.wo.z, view.enters);
   bsdf_detail::complete_coat_view(optics, view);
   return view;

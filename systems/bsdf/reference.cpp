@@ -112,6 +112,42 @@ BsdfSample sample_diffuse(const Direction& wo, const Spectrum4& albedo, double u
   return sample;
 }
 
+namespace {
+double sheet_share(const SheetOptics& optics) {
+  double reflected = 0, all = 0;
+  for (size_t j = 0; j < 4; ++j) {
+    reflected += optics.reflectance[j];
+    all += optics.reflectance[j] + optics.transmittance[j];
+  }
+  return all > 0 ? reflected / all : 0;
+}
+}  // namespace
+
+BsdfValue eval_sheet(const Direction& wo, const SheetOptics& optics, const Direction& wi) {
+  BsdfValue value;
+  if (wo.z * wi.z == 0) return value;
+  const bool reflects = wo.z * wi.z > 0;
+  const double share = sheet_share(optics);
+  value.pdf = std::abs(wi.z) / pi * (reflects ? share : 1 - share);
+  const Spectrum4& albedo = reflects ? optics.reflectance : optics.transmittance;
+  for (size_t j = 0; j < 4; ++j) value.f_cos[j] = albedo[j] / pi * std::abs(wi.z);
+  return value;
+}
+
+BsdfSample sample_sheet(const Direction& wo, const SheetOptics& optics, double choice, double u, double v) {
+  BsdfSample sample;
+  const double share = sheet_share(optics);
+  const PointD3 up = warps::cosine_hemisphere(u, v);
+  sample.transmitted = choice >= share;
+  sample.wi = {up.x, up.y, up.z * side_of(wo) * (sample.transmitted ? -1 : 1)};
+  const double probability = sample.transmitted ? 1 - share : share;
+  sample.pdf = warps::cosine_hemisphere_pdf(up.z) * probability;
+  if (!(sample.pdf > 0)) return sample;
+  for (size_t j = 0; j < 4; ++j)
+    sample.weight[j] = (sample.transmitted ? optics.transmittance : optics.reflectance)[j] / probability;
+  return sample;
+}
+
 BsdfValue eval_rough(const Direction& wo, const RoughOptics& optics, const Direction& wi) {
   BsdfValue value;
   if (wo.z * wi.z <= 0) return value;

@@ -52,6 +52,13 @@ struct BsdfSample {
 BsdfValue eval_diffuse(const Direction& wo, const Spectrum4& albedo, const Direction& wi);
 BsdfSample sample_diffuse(const Direction& wo, const Spectrum4& albedo, double u, double v);
 
+// The sheet that scatters to both sides: see diffuse_transmission-inl.h.
+struct SheetOptics {
+  Spectrum4 reflectance{}, transmittance{};
+};
+BsdfValue eval_sheet(const Direction& wo, const SheetOptics& optics, const Direction& wi);
+BsdfSample sample_sheet(const Direction& wo, const SheetOptics& optics, double choice, double u, double v);
+
 // Both forms of the rough reflector: see rough-inl.h. `choice` takes the lobe.
 struct RoughOptics {
   Spectrum4 kd{}, ks{};

@@ -26,15 +26,17 @@ double between_rows(const CoatOptics& optics, double eta, size_t column) {
 // What the body reflects of what enters, (1 - E_mean) included.
 double body_albedo(const CoatOptics& optics, size_t j) {
   const double inside = 1 - (1 - coat_surface_average(optics, optics.eta[j])) / (optics.eta[j] * optics.eta[j]);
-  return optics.albedo[j] * (1 - inside) / (1 - optics.albedo[j] * inside);
+  const double again = std::clamp(optics.albedo[j] * inside, 0.0, 1.0);
+  const double missing = optics.hits < 0 ? 0 : std::pow(again, optics.hits);
+  return optics.albedo[j] * (1 - inside) / (1 - optics.albedo[j] * inside) * (1 - missing);
 }
 
 double surface_share(const CoatOptics& optics, double cos_o) {
   double surface = 0, body = 0;
   for (size_t j = 0; j < 4; ++j) {
-    const double e = coat_surface_albedo(optics, optics.eta[j], cos_o);
-    surface += e;
-    body += (1 - e) * body_albedo(optics, j);
+    const double enters = coat_entry(optics, optics.eta[j], cos_o);
+    surface += 1 - enters;
+    body += enters * body_albedo(optics, j);
   }
   return surface + body > 0 ? surface / (surface + body) : 0;
 }
@@ -51,6 +53,13 @@ double coat_surface_albedo(const CoatOptics& optics, double eta, double cos_thet
                    x - static_cast<double>(node));
 }
 
+double coat_entry(const CoatOptics& optics, double eta, double cos_theta) {
+  const double enters = 1 - coat_surface_albedo(optics, eta, cos_theta);
+  if (optics.alpha > 0 || optics.thickness == 0) return enters;
+  const double cos_inside = cos_transmitted(eta, cos_theta);
+  return cos_inside > 0 ? enters * std::exp(-optics.thickness / cos_inside) : 0;
+}
+
 BsdfValue eval_coated(const Direction& wo, const CoatOptics& optics, const Direction& wi) {
   BsdfValue value;
   if (wo.z * wi.z <= 0) return value;
@@ -59,11 +68,11 @@ BsdfValue eval_coated(const Direction& wo, const CoatOptics& optics, const Direc
   value.pdf = (1 - share) * cos_i / pi;
   for (size_t j = 0; j < 4; ++j) {
     const double eta = optics.eta[j], leaves = 1 - coat_surface_average(optics, eta);
-    value.f_cos[j] = (1 - coat_surface_albedo(optics, eta, cos_i)) * (1 - coat_surface_albedo(optics, eta, cos_o)) *
-                     body_albedo(optics, j) / (pi * leaves) * cos_i;
+    value.f_cos[j] = coat_entry(optics, eta, cos_i) * coat_entry(optics, eta, cos_o) * body_albedo(optics, j) /
+                     (pi * leaves) * cos_i;
   }
   if (optics.alpha == 0) return value;
-  const Roughness roughness{optics.alpha, optics.alpha};
+  const Roughness roughness{optics.alpha, optics.alpha_y};
   const Direction o = {wo.x, wo.y, cos_o}, i = {wi.x, wi.y, cos_i};
   const Direction m = normalize({o.x + i.x, o.y + i.y, o.z + i.z});
   const double lambda_o = ggx_lambda(roughness, o), lambda_i = ggx_lambda(roughness, i);
@@ -87,7 +96,7 @@ BsdfSample sample_coated(const Direction& wo, const CoatOptics& optics, double c
     return sample;
   }
   if (surface) {
-    sample.wi = sample_conductor(wo, {optics.alpha, optics.alpha}, {}, u, v).wi;
+    sample.wi = sample_conductor(wo, {optics.alpha, optics.alpha_y}, {}, u, v).wi;
   } else {
     const PointD3 p = warps::cosine_hemisphere(u, v);
     sample.wi = {p.x, p.y, p.z * side};

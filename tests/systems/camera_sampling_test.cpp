@@ -76,5 +76,60 @@ TEST(CameraSampling, PlacesInAPixelFollowItsFilter) {
   EXPECT_GT(chi_square_test(observed, expected).p_value, chi_square_level);
 }
 
+// Through the centres of the pixels; in camera axes, with pbrt's spherical camera's formulas.
+TEST(CameraSampling, SphericalCamerasSeeAllDirectionsByLatitudeAndLongitude) {
+  SceneBuilder b(side, side, 1, 1);
+  b.scene.settings.pixel_jitter = false;
+  Camera camera;
+  camera.kind = CameraKind::spherical;
+  const glm::dmat4 place = moved(1, 2, 3) * turned(50, 1, 2, 3) * stretched(1, 1, -1);
+  const Entity entity = b.place(place);
+  b.scene.registry.set(entity, camera);
+  std::vector<int> seen(side * side, 0);
+  each_camera_ray(*b.freeze(), [&](const PathStream& paths, uint32_t i) {
+    const glm::dvec3 d(paths.direction[0][i], paths.direction[1][i], paths.direction[2][i]);
+    const glm::dvec3 local = glm::inverse(glm::dmat3(place)) * d;
+    EXPECT_NEAR(paths.origin[1][i], 2, 1e-6);
+    const double theta = std::acos(std::clamp(local.y, -1.0, 1.0));
+    double phi = std::atan2(local.z, local.x);
+    if (phi < 0) phi += 2 * pi;
+    const double x = phi / (2 * pi) * side - 0.5, y = theta / pi * side - 0.5;
+    ASSERT_NEAR(x, std::round(x), 0.02);
+    ASSERT_NEAR(y, std::round(y), 0.02);
+    seen[static_cast<size_t>(std::round(y) * side + std::round(x))] += 1;
+  });
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), side * side) << "each pixel its own direction";
+}
+
+// Directions are uniform on the sphere: bins of equal height and longitude. The centre looks up, as in pbrt's images.
+TEST(CameraSampling, SphericalCamerasSeeEqualAreas) {
+  SceneBuilder b(side, side, 1, 1);
+  b.scene.settings.filter = {FilterKind::gaussian, 1.5f, 1.5f, 0.5f};
+  Camera camera;
+  camera.kind = CameraKind::spherical;
+  camera.mapping = ImageMapping::equal_area;
+  const Entity entity = b.place();
+  b.scene.registry.set(entity, camera);
+  std::vector<double> observed(12 * 16, 0.0), expected(12 * 16, double{side} * side / (12 * 16));
+  glm::dvec3 centre(0), right(0), lower(0);
+  uint32_t n = 0;
+  each_camera_ray(*b.freeze(), [&](const PathStream& paths, uint32_t i) {
+    const glm::dvec3 d(paths.direction[0][i], paths.direction[1][i], paths.direction[2][i]);
+    EXPECT_NEAR(glm::length(d), 1, 1e-5);
+    const double height = (d.y + 1) / 2, phi = std::atan2(d.z, d.x) / (2 * pi) + 0.5;
+    observed[std::min<size_t>(11, static_cast<size_t>(height * 12)) * 16 +
+             std::min<size_t>(15, static_cast<size_t>(phi * 16))] += 1;
+    const uint32_t packet = n / 16, x = packet % (side / 4) * 4 + n % 4, y = packet / (side / 4) * 4 + n % 16 / 4;
+    if (x == side / 2 && y == side / 2) centre = d;
+    if (x == side - 1 && y == side / 2) right = d;
+    if (x == side / 2 && y == side - 1) lower = d;
+    ++n;
+  });
+  EXPECT_GT(centre.y, 0.99);
+  EXPECT_GT(right.x, 0.99);
+  EXPECT_GT(lower.z, 0.99) << "the lower edge's middle looks ahead";
+  EXPECT_GT(chi_square_test(observed, expected).p_value, chi_square_level);
+}
+
 }  // namespace
 }  // namespace metamer

@@ -6,6 +6,7 @@
 
 #include "systems/bsdf/coat_albedo.h"
 #include "systems/bsdf/reference.h"
+#include "systems/bsdf/reference_coat.h"
 #include "tests/support/chi_square.h"
 #include "tests/systems/support/radiances.h"
 
@@ -108,6 +109,50 @@ Answers add_smooth_coat(SceneBuilder& b) {
 Answers add_rough_coat(SceneBuilder& b) {
   plane(b, b.coated(unit_spectrum, b.named("BK7"), 0.3f));
   return at_all_levels(on_average(white));
+}
+// pbrt's coat: what its closed form adds up to, each wavelength with its own index and albedo.
+Answers add_layered(SceneBuilder& b, float alpha_x, float alpha_y) {
+  Material coat = b.coated(slope(b, 0.2, 0.9), slope(b, 1.7, 1.4));
+  coat.kind = MaterialKind::layered;
+  coat.alpha_x = alpha_x;
+  coat.alpha_y = alpha_y;
+  coat.layer.thickness = 0.2f;
+  coat.layer.max_depth = 4;
+  plane(b, coat);
+  Column<float> table;
+  const double width = std::sqrt(double{alpha_x} * double{alpha_y});
+  const CoatRows rows = add_coat_rows({width, false, true, double{0.2f}}, 1.4, 1.7, table);
+  const Radiance body = tabulated([&](double nm) {
+    const double a = slope_at(nm, 0.2, 0.9), eta = slope_at(nm, 1.7, 1.4);
+    reference::CoatOptics optics{{a, a, a, a}, {eta, eta, eta, eta}, double{alpha_x}, false, table.data(), rows};
+    optics.alpha_y = double{alpha_y};
+    optics.thickness = double{0.2f};
+    optics.hits = 2;
+    return albedo([&](const Direction& wi) { return reference::eval_coated(viewer, optics, wi).f_cos[0]; });
+  });
+  if (alpha_x > 0) return at_all_levels(on_average(body));
+  const Radiance all = [=](double nm) { return body(nm) + coat_fresnel(slope_at(nm, 1.7, 1.4), cos_theta, false); };
+  return {on_average(body), on_average(all), on_average(all)};
+}
+Answers add_smooth_layered(SceneBuilder& b) { return add_layered(b, 0, 0); }
+Answers add_rough_layered(SceneBuilder& b) { return add_layered(b, 0.2f, 0.4f); }
+// Lit from both sides.
+Answers add_sheet(SceneBuilder& b) {
+  Material sheet = b.diffuse(slope(b, 0.1, 0.4));
+  sheet.kind = MaterialKind::diffuse_transmission;
+  sheet.transmittance = slope(b, 0.5, 0.3);
+  plane(b, sheet);
+  return at_all_levels(on_average([](double nm) { return slope_at(nm, 0.6, 0.7); }));
+}
+Answers add_mixed(SceneBuilder& b) {
+  Material mixed;
+  mixed.kind = MaterialKind::mix;
+  for (Entity* part : {&mixed.mix.first, &mixed.mix.second}) *part = b.scene.registry.create();
+  b.scene.registry.set(mixed.mix.first, b.diffuse(0.25));
+  b.scene.registry.set(mixed.mix.second, b.coated(unit_spectrum, b.named("BK7"), 0.3f));
+  mixed.mix.amount = 0.6f;
+  plane(b, mixed);
+  return at_all_levels(on_average([](double) { return 0.7; }));
 }
 Answers add_perfect_mirror(SceneBuilder& b) {
   plane(b, b.conductor(b.constant(1), b.constant(1e8)));
@@ -243,6 +288,10 @@ constexpr Row rows[] = {
     {"rough, normalised", add_normalized},
     {"smooth coat, white", add_smooth_coat},
     {"rough coat, white", add_rough_coat},
+    {"smooth surface of a layer", add_smooth_layered},
+    {"rough surface of a layer", add_rough_layered},
+    {"sheet", add_sheet},
+    {"mix", add_mixed},
     {"perfect mirror", add_perfect_mirror},
     {"gold mirror", add_gold_mirror},
     {"rough metal, lossless", add_lossless_rough_metal},

@@ -64,12 +64,6 @@ TEST(Freeze, NamesTheMistakesOfAScene) {
     b.light(LightKind::area, unit_spectrum, 1);
     EXPECT_THAT(mistakes_of(b), HasSubstr("no geometry"));
   }
-  {
-    SceneBuilder b = view();
-    b.light(LightKind::environment, unit_spectrum, 1);
-    b.light(LightKind::environment, unit_spectrum, 1);
-    EXPECT_THAT(mistakes_of(b), HasSubstr("second environment"));
-  }
 }
 
 TEST(Freeze, CountsTrianglesWithoutArea) {

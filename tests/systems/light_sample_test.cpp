@@ -48,7 +48,7 @@ class Emission {
     }
     double seconds = 0;
     intersect_bounce(world_, paths, batch_.hits, &seconds);
-    sort_hits(world_, paths.size, batch_.hits, batch_.order, batch_.shade.groups);
+    sort_hits(world_, 0, paths, batch_.hits, batch_.order, batch_.shade.groups);
     batch_.shade.size = batch_.shade.groups.back().padded_end();
     surface(world_, paths, batch_.hits, batch_.order, batch_.shade);
     emission(world_, batch_.shade, batch_.slots);
@@ -231,7 +231,7 @@ TEST(LightSample, AConstantSkyBesideALamp) {
   b.emit(b.add(sphere(1), b.diffuse(0.0), moved(0.5, 1.6, 0)), unit_spectrum, 1);
   b.look_at({0, 0, 50}, {0, 0, 0}, perspective(40));
   const std::unique_ptr<World> world = b.freeze();
-  const double sky = world->lights[world->environment.light].choice_probability;
+  const double sky = world->lights[world->environments[0].light].choice_probability;
   const double hidden = (1 - std::sqrt(1 - 1 / (0.25 + 2.56))) / 2;
   SceneBuilder again = empty();
   again.light(LightKind::environment, unit_spectrum, 1);
@@ -285,6 +285,46 @@ TEST(LightSample, ImagesOfBothMappings) {
   }
 }
 
+// Two that share no direction, turned alike: what a ray meets is the one or the other.
+TEST(LightSample, TwoEnvironments) {
+  SceneBuilder b = empty();
+  for (const bool upper : {false, true}) {
+    Image image;
+    image.mapping = upper ? ImageMapping::latitude_longitude : ImageMapping::equal_area;
+    image.width = upper ? 16 : 8;
+    image.height = 8;
+    for (uint32_t y = 0; y < image.height; ++y)
+      for (uint32_t x = 0; x < image.width; ++x) {
+        // Latitudes well above the horizon; the corners of the octahedron, well below it.
+        const double u = std::abs(2 * (x + 0.5) / image.width - 1), v = std::abs(2 * (y + 0.5) / image.height - 1);
+        const bool lit = upper ? y < 3 : u + v > 1.3;
+        for (int c = 0; c < 3; ++c) image.rgb.push_back(lit ? 1.0f + float(x % 3) : 0.0f);
+      }
+    b.environment(image, upper ? 1 : 2, turned(70, 0.3, 0.5, 1));
+  }
+  expect_sides_agree(b, {0, 0, 0}, 1);
+}
+
+TEST(LightSample, APortalFromAskew) {
+  for (const bool has_image : {false, true}) {
+    SceneBuilder b = empty();
+    Image image;
+    image.mapping = ImageMapping::equal_area;
+    image.width = image.height = 8;
+    for (uint32_t i = 0; i < 64; ++i) image.rgb.insert(image.rgb.end(), 3, 0.5f + float(i * 5 % 7));
+    const Entity sky = has_image ? b.environment(image, 1, turned(70, 0.3, 0.5, 1))
+                                 : b.light(LightKind::environment, unit_spectrum, 1);
+    Light light = b.scene.registry.get<Light>(sky);
+    light.has_portal = 1;
+    const glm::dmat3 turn(turned(40, 1, 0.4, 0.2));
+    light.portal_corner = glm::dvec3(-0.3, -1.2, 0.6);
+    light.portal_x = turn * glm::dvec3(1.7, 0, 0);
+    light.portal_y = turn * glm::dvec3(0, 2.1, 0);
+    b.scene.registry.set(sky, light);
+    expect_sides_agree(b, {0, 0, 0}, 1);
+  }
+}
+
 // Which light it is, told by its distance: point, spot and directional lights have no more than that to draw.
 TEST(LightSample, EachLightIsChosenWithItsProbability) {
   SceneBuilder b = empty();
@@ -329,8 +369,8 @@ TEST(Environment, ScaleMeansNothingAtInfinity) {
     };
     const std::unique_ptr<World> plain = placed({1, 1, 1}), scaled = placed({3, 0.2, 7});
     for (int i = 0; i < 9; ++i) {
-      EXPECT_NEAR(scaled->environment.to_world[i], plain->environment.to_world[i], 1e-6);
-      EXPECT_NEAR(scaled->environment.to_local[i], plain->environment.to_local[i], 1e-6);
+      EXPECT_NEAR(scaled->environments[0].to_world[i], plain->environments[0].to_world[i], 1e-6);
+      EXPECT_NEAR(scaled->environments[0].to_local[i], plain->environments[0].to_local[i], 1e-6);
     }
   }
 }

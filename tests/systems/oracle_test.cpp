@@ -268,6 +268,41 @@ TEST(Oracle, AgreesUnderAnEqualAreaImageBesideAnAreaLight) {
   expect_agreement(*b.freeze(), 512, 0.02);
 }
 
+// A goniometric light, a projection, a sky and another that enters by a portal, over a ball of glass: all of them in
+// colour, on surfaces that see them at their sharp edges.
+TEST(Oracle, AgreesOnImagesOfAllLightsAndAPortal) {
+  for (const Integrator integrator : {Integrator::path, Integrator::recursive}) {
+    SceneBuilder b(side, side, 2048, 4);
+    b.scene.settings.integrator = integrator;
+    add_floor(b);
+    b.add(sphere(0.6f), b.dielectric(b.constant(1.5)), moved(0.5, -0.4, 0.2));
+    b.add(sphere(0.5f), b.diffuse(0.7), moved(-0.8, -0.5, 0));
+    const Entity window = b.environment(sky(ImageMapping::equal_area), 2, turned(-70, 0.3, 0.5, 1));
+    Light portal = b.scene.registry.get<Light>(window);
+    portal.has_portal = 1;
+    portal.portal_corner = {-1.5, 1, -1.2};
+    portal.portal_x = {0, 0, 1.4f};
+    portal.portal_y = {2, 0.4f, 0};
+    b.scene.registry.set(window, portal);
+    b.environment(sky(ImageMapping::latitude_longitude), 0.1f, turned(40, 1, 0.5, 0.2));
+    for (const LightKind kind : {LightKind::goniometric, LightKind::projection}) {
+      b.scene.images.push_back(
+          sky(kind == LightKind::goniometric ? ImageMapping::equal_area : ImageMapping::latitude_longitude));
+      Light light;
+      light.kind = kind;
+      light.spectrum = b.named("D65");
+      light.scale = 0.01f;
+      light.fov_deg = 40;
+      light.image = static_cast<ImageId>(b.scene.images.size() - 1);
+      b.scene.registry.set(b.place(moved(kind == LightKind::projection ? 1.2 : -1, 1.5, 1.3) *
+                                   turned(kind == LightKind::projection ? 130 : 30, 1, 0.3, 0)),
+                           light);
+    }
+    look(b);
+    expect_agreement(*b.freeze(), 2048, 0.02);
+  }
+}
+
 TEST(Oracle, AgreesOnTwoSidedDiskAndStretchedSphereLights) {
   SceneBuilder b(side, side, 2048, 4);
   add_walls(b);

@@ -151,6 +151,25 @@ TEST(RgbMode, AnEnvironmentImageIsTakenAsItIs) {
     }
 }
 
+TEST(RgbMode, ImagesOfLampsAndProjectionsAreFactors) {
+  for (const ColorMode mode : both)
+    for (const LightKind kind : {LightKind::goniometric, LightKind::projection}) {
+      SceneBuilder b = point_view(mode, 4, 1);
+      b.add(rectangle(1, 1), b.diffuse(b.named("colorchecker.cyan")), floor_turn);
+      b.scene.images.push_back(one_texel({0.9f, 0.1f, 0.02f}, ColorSpace::srgb));
+      Light light;
+      light.kind = kind;
+      light.spectrum = b.named("A");
+      light.scale = 0.01f;
+      light.image = 0;
+      b.scene.registry.set(b.place(moved(0, 2, 0) * turned(90, 1, 0, 0)), light);
+      const Color3 albedo = albedo_coefficients(mode, *named_spectrum("colorchecker.cyan"));
+      const Color3 lamp = light_coefficients(mode, *named_spectrum("A"));
+      const Color3 image = multiply(image_to_coefficients(mode, ColorSpace::srgb), Color3{0.9, 0.1, 0.02});
+      expect_picture(*b.freeze(), times(product(product(albedo, lamp), image), 0.01 / pi / 4), 1e-5);
+    }
+}
+
 // A white body in light from everywhere has the light's own colour; every path of it in the light's proportions.
 TEST(RgbMode, AWhiteBodyVanishesInAFurnaceOfAnyColour) {
   for (const ColorMode mode : both)

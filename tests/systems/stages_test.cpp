@@ -24,7 +24,8 @@ TEST(SortHits, GroupsByKindInOrderAndPads) {
   constexpr uint32_t size = 100;
   for (uint32_t i = 0; i < size; ++i) batch.hits.object[i] = i % 4 == 3 ? no_index : i % 4;
   Groups groups;
-  sort_hits(*world, size, batch.hits, batch.order, groups);
+  batch.paths.size = size;
+  sort_hits(*world, 0, batch.paths, batch.hits, batch.order, groups);
   std::vector<int> seen(size);
   uint32_t begin = 0;
   for (uint32_t kind = 0; kind < shade_kind_count; ++kind) {
@@ -77,7 +78,7 @@ TEST(Surface, IsWhereDoublePrecisionFindsIt) {
   }
   double seconds = 0;
   intersect_bounce(*world, paths, batch.hits, &seconds);
-  sort_hits(*world, paths.size, batch.hits, batch.order, batch.shade.groups);
+  sort_hits(*world, 0, paths, batch.hits, batch.order, batch.shade.groups);
   batch.shade.size = batch.shade.groups.back().padded_end();
   surface(*world, paths, batch.hits, batch.order, batch.shade);
   size_t hits = 0, other_object = 0;

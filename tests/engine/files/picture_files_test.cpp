@@ -99,6 +99,36 @@ TEST_F(PictureFiles, ExrSaysWhatItsNumbersMean) {
   EXPECT_EQ(spec.get_string_attribute("compression"), "zip");
 }
 
+// A crop lies where it was cut out, as OpenEXR's data window within the display window.
+TEST_F(PictureFiles, ExrOfACropKnowsItsPlaceInTheFrame) {
+  FrameHeader header = some_header();
+  header.window = {30, 7, 200, 100};
+  const Picture picture = some_picture();
+  const Film film = some_film();
+  ASSERT_EQ(write_exr(path("a.exr"), picture, header, sample_totals(film), &film), std::nullopt);
+  const OIIO::ImageBuf image(path("a.exr"));
+  EXPECT_EQ(image.spec().x, 30);
+  EXPECT_EQ(image.spec().y, 7);
+  EXPECT_EQ(image.spec().width, static_cast<int>(width));
+  EXPECT_EQ(image.spec().full_width, 200);
+  EXPECT_EQ(image.spec().full_height, 100);
+  float pixel[3] = {};
+  image.getpixel(31, 9, pixel);
+  EXPECT_EQ(pixel[1], picture.g[2 * width + 1]);
+  Film read_film_back;
+  FrameHeader read_header;
+  ASSERT_EQ(read_film(path("a.exr"), read_film_back, read_header), std::nullopt);
+  EXPECT_TRUE(read_film_back == film);
+  EXPECT_EQ(read_header.window.x, 30u);
+  EXPECT_EQ(read_header.window.y, 7u);
+  EXPECT_EQ(read_header.window.full_width, 200u);
+  EXPECT_EQ(read_header.window.full_height, 100u);
+  Picture read_back;
+  SampleTotals samples;
+  ASSERT_EQ(read_picture(path("a.exr"), read_back, read_header, samples), std::nullopt);
+  EXPECT_EQ(read_back.r[5], picture.r[5]);
+}
+
 TEST_F(PictureFiles, ExrHasTheSameBytesTwice) {
   const Film film = some_film();
   for (const char* name : {"a.exr", "b.exr"})

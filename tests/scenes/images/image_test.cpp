@@ -46,6 +46,28 @@ std::string pfm(std::string_view header, const std::vector<float>& values) {
   return bytes;
 }
 
+TEST(Images, ChromaticitiesNameTheColourSpace) {
+  const TemporaryFolder folder;
+  const auto space_of = [&](const std::array<float, 8>& named) {
+    const std::string path = (folder.path() / "named.exr").string();
+    OIIO::ImageSpec spec(2, 2, 3, OIIO::TypeDesc::HALF);
+    spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), named.data());
+    const std::vector<float> values(12, 0.5f);
+    const auto out = OIIO::ImageOutput::create(path);
+    EXPECT_TRUE(out->open(path, spec) && out->write_image(OIIO::TypeDesc::FLOAT, values.data()) && out->close());
+    return read(path);
+  };
+  // ITU-R BT.2020-2; SMPTE ST 2065-1 with the white of Academy's TB-2014-004.
+  EXPECT_EQ(space_of({0.708f, 0.292f, 0.17f, 0.797f, 0.131f, 0.046f, 0.3127f, 0.329f}).image.color_space,
+            ColorSpace::rec2020);
+  EXPECT_EQ(space_of({0.7347f, 0.2653f, 0, 1, 0.0001f, -0.077f, 0.32168f, 0.33767f}).image.color_space,
+            ColorSpace::aces2065_1);
+  EXPECT_EQ(space_of({0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f}).messages, "");
+  const ImageResult other = space_of({0.6f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f});
+  EXPECT_EQ(other.image.color_space, ColorSpace::srgb);
+  EXPECT_THAT(other.messages, HasSubstr("no known colour space"));
+}
+
 TEST(Images, RowsRunFromTheTopInEveryFormat) {
   const TemporaryFolder folder;
   const std::vector<float> rgb = {1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1};  // red above blue

@@ -32,9 +32,9 @@ TEST(NativeCoatedMistakes, EveryKeyIsChecked) {
   EXPECT_THAT(messages("\"reflectance\": 1.3, \"eta\": 0, \"roughness\": -1"),
               AllOf(HasSubstr("'reflectance' is the number 1.3; expected a number from 0 to 1"),
                     HasSubstr("'eta' is the number 0; expected a number above 0"),
-                    HasSubstr("'roughness' is the number -1; expected a number from 0 to 1")));
+                    HasSubstr("'roughness' is the number -1; expected a number of at least 0")));
   EXPECT_THAT(messages("\"reflectance\": 0.3, \"eta\": 1.5, \"roughness\": [0.1, 0.2]"),
-              HasSubstr("'roughness' is an array of 2; expected a number from 0 to 1"));
+              HasSubstr("'roughness' is an array of 2; expected a number of at least 0"));
   EXPECT_THAT(messages("\"reflectance\": 0.3, \"glass\": \"BK8\""), HasSubstr("did you mean 'BK7'"));
   EXPECT_THAT(messages("\"reflectance\": 0.3, \"eta\": 1.5, \"rougness\": 0"), HasSubstr("did you mean 'roughness'"));
 }

@@ -99,6 +99,61 @@ TEST(NativeLights, ThePictureHasTheirIlluminance) {
   EXPECT_NEAR(luminance(R"({"light": {"type": "environment", "nits": 50}})") / 0.5, 50, 1);
 }
 
+// Two rows of four: the upper row 2, the lower 0.
+std::string half_white() {
+  std::string text = "PF\n4 2\n-1.0\n";
+  for (int i = 0; i < 8; ++i) {
+    const float value = i < 4 ? 0.0f : 2.0f;  // rows from the bottom up
+    for (int c = 0; c < 3; ++c) text.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  }
+  return text;
+}
+
+TEST(NativeLights, WithImagesAreKindsOfTheirOwn) {
+  const TemporaryFolder folder;
+  folder.write("half.pfm", half_white());
+  const auto read_light = [&](const std::string& light) {
+    Scene scene;
+    Diagnostics diagnostics;
+    const std::string path =
+        folder.write("scene.json", std::string("{\"metamer\": 1, \"entities\": [") + camera +
+                                       ", {\"light\": {\"image\": \"half.pfm\", " + light + "}}]}");
+    EXPECT_TRUE(read_scene(path, scene, diagnostics)) << format_diagnostics(diagnostics);
+    return scene;
+  };
+  const auto only = [](const Scene& scene) { return scene.registry.table<Light>().get(0); };
+  const auto candela = [&](const Scene& scene) {
+    return scene.spectra.luminance(only(scene).spectrum) * double{only(scene).scale};
+  };
+  const Scene lamp = read_light(R"("type": "goniometric", "candela": 5, "scale": 2)");
+  EXPECT_EQ(only(lamp).kind, LightKind::goniometric);
+  EXPECT_NEAR(candela(lamp), 10, 1e-4);
+  EXPECT_EQ(lamp.images[0].mapping, ImageMapping::latitude_longitude);
+  // Above the horizon 2 cd per candela: 4 pi lm.
+  EXPECT_NEAR(candela(read_light(R"("type": "goniometric", "lumens": 100)")), 100 / (4 * pi), 1e-3);
+  EXPECT_NEAR(candela(read_light(R"("type": "goniometric")")), 1, 1e-5);
+  const Scene slide = read_light(R"("type": "projection", "fov": 40, "candela": 3)");
+  EXPECT_EQ(only(slide).kind, LightKind::projection);
+  EXPECT_EQ(only(slide).fov_deg, 40);
+  EXPECT_NEAR(candela(slide), 3, 1e-4);
+  EXPECT_EQ(only(read_light(R"("type": "projection")")).fov_deg, 90);
+  const Scene screen = read_light(R"("type": "area", "nits": 3}, "geometry": {"type": "sphere")");
+  EXPECT_EQ(only(screen).image, 0u);
+  EXPECT_NEAR(candela(screen), 3, 1e-4);
+  const Scene sky =
+      read_light(R"("type": "environment", "portal": [[1, 0, 0], [1, 2, 0], [1, 2, 3], [1, 0, 3]], "luminance": 7)");
+  EXPECT_EQ(only(sky).has_portal, 1u);
+  EXPECT_EQ(only(sky).portal_corner, glm::vec3(1, 0, 0));
+  EXPECT_EQ(only(sky).portal_x, glm::vec3(0, 0, 3));
+  EXPECT_EQ(only(sky).portal_y, glm::vec3(0, 2, 0));
+}
+
+TEST(NativeLights, ThereMayBeSeveralEnvironments) {
+  const auto world = frozen(read(std::string(camera) + R"(, {"light": {"type": "environment", "luminance": 3}},
+        {"light": {"type": "sky", "resolution": 16}}, {"light": {"type": "environment", "luminance": 4}})"));
+  EXPECT_EQ(world->environments.size(), 3u);
+}
+
 TEST(NativeSky, BecomesAnEnvironmentAndASun) {
   for (const bool z_up : {false, true}) {
     const Scene scene = read(std::string(camera) + R"(, {"transform": {"rotate": {"axis": [0, 0, 1], "degrees": 0}},
@@ -114,9 +169,11 @@ TEST(NativeSky, BecomesAnEnvironmentAndASun) {
     EXPECT_NEAR(sun.p[z_up ? 2 : 1], 0.5, 1e-6);
     EXPECT_NEAR(sun.p[z_up ? 1 : 2], 0, 1e-6);
     EXPECT_NEAR(double{sun.scale} * world->spectra.value(sun.spectrum, 550) / (2 * sun_radiance(4, 30)[190]), 1, 1e-5);
-    EXPECT_EQ(world->environment.height, 32u);
+    ASSERT_EQ(world->environments.size(), 1u);
+    const Environment& environment = world->environments[0];
+    EXPECT_EQ(world->light_images.rows[environment.image].height, 32u);
     // The image's +z is the zenith.
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(world->environment.to_world[3 * i + 2], i == (z_up ? 2 : 1) ? 1 : 0, 1e-6);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(environment.to_world[3 * i + 2], i == (z_up ? 2 : 1) ? 1 : 0, 1e-6);
   }
   const Scene without = read(R"({"light": {"type": "sky", "sun": false, "resolution": 16}})");
   EXPECT_EQ(without.registry.table<Light>().size(), 1u);
@@ -155,7 +212,7 @@ TEST(NativeSky, ItsSpectraAreCloseToCieDaylight) {
   const SkyModel model(3, 40);
   Scene scene = read(std::string(camera) + R"(, {"light": {"type": "sky", "sun_elevation": 40, "sun": false}})");
   const auto world = frozen(scene);
-  const Environment& sky = world->environment;
+  const LightImage& sky = world->light_images.rows[0];
   const DataTable& components = require_embedded_data("illuminant/D_series");
   const Samples s0 = resample(components, 1, Extend::zero), s1 = resample(components, 2, Extend::zero),
                 s2 = resample(components, 3, Extend::zero);
@@ -169,8 +226,8 @@ TEST(NativeSky, ItsSpectraAreCloseToCieDaylight) {
     Samples wanted;
     for (size_t i = 0; i < lambda_count; ++i) wanted[i] = s0[i] + m1 * s1[i] + m2 * s2[i];
     const double to_luminance = yxy[0] / (luminous_efficacy * integrate_xyz(wanted)[1]);
-    const float* texel = sky.texels.data() + 4 * (size_t{row} * sky.width + column);
-    const LightRow& light = world->lights[sky.light];
+    const float* texel = world->light_images.texels.data() + 4 * (size_t{row} * sky.width + column);
+    const LightRow& light = world->lights[world->environments[0].light];
     double worst = 0, largest = 0;
     for (double lambda = 400; lambda <= 700; lambda += 1) {
       const double value = double{light.scale} * world->spectra.value(light.spectrum, lambda) * double{texel[3]} *

@@ -155,8 +155,8 @@ TEST(NativeMistakes, NumbersOutOfRange) {
               HasSubstr("expected a number above 0"));
   EXPECT_THAT(messages_of_material("{\"type\": \"conductor\", \"eta\": 1, \"kappa\": -2}"),
               HasSubstr("'kappa' is the number -2; expected a number of at least 0"));
-  EXPECT_THAT(messages_of_material("{\"type\": \"conductor\", \"metal\": \"Au\", \"roughness\": 1.5}"),
-              HasSubstr("'roughness' is the number 1.5; expected a number from 0 to 1"));
+  EXPECT_THAT(messages_of_material("{\"type\": \"conductor\", \"metal\": \"Au\", \"roughness\": -1.5}"),
+              HasSubstr("'roughness' is the number -1.5; expected a number of at least 0"));
   for (const char* fov : {"0", "180", "-45", "1e30", "179.999999999"}) {
     EXPECT_THAT(messages_of_entity("{\"camera\": {\"type\": \"perspective\", \"fov\": " + std::string(fov) + "}}"),
                 HasSubstr("expected a number above 0 and below 180"))

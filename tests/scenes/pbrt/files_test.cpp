@@ -85,8 +85,6 @@ TEST(PbrtFiles, AMissingFileAFolderAndOtherEncodingsAreErrors) {
   EXPECT_FALSE(read_scene_at((folder.path() / "none").string()).ok);
   EXPECT_FALSE(read_scene_at(folder.path().string()).ok);
   EXPECT_THAT(read_text("\xff\xfe W").messages[0], testing::StartsWith("scene:1: error: UTF-16 is not supported"));
-  EXPECT_THAT(read_text("\x1f\x8b\x08").messages[0],
-              testing::StartsWith("scene:1: error: compressed scene files are not supported yet"));
   EXPECT_TRUE(read_text("\xef\xbb\xbf" + sample).ok) << "a UTF-8 byte order mark is harmless";
   EXPECT_TRUE(read_text("WorldBegin\r\nShape \"sphere\"\r\n").ok) << "so are carriage returns";
 }

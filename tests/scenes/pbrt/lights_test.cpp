@@ -176,9 +176,27 @@ TEST(PbrtLights, AnImagesIlluminanceIsMeasuredAsPbrtDoes) {
   EXPECT_NEAR(luminance(read), 10 / (pi / 2), 0.01) << "pbrt measures half of pi for a sky of 1";
 }
 
-TEST(PbrtLights, AnImageThatIsNotSquareOrMissingIsAnError) {
+TEST(PbrtLights, AnImageTwiceAsWideAsHighIsReadInLatitudeAndLongitude) {
   const TemporaryFolder folder;
-  folder.write("wide.pfm", pfm(8, 4, {1, 1, 1}));
+  folder.write("sky.pfm", pfm(64, 32, {1, 1, 1}));
+  const std::string light = "LightSource \"infinite\" \"string filename\" \"sky.pfm\" ";
+  const ReadScene read = read_scene_at(
+      folder.write("scene", "Camera \"perspective\" WorldBegin\n" + light + "\n" + light + "\"float illuminance\" 10"));
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  ASSERT_EQ(read.count<Light>(), 2u);
+  EXPECT_EQ(read.scene.images[0].mapping, ImageMapping::latitude_longitude);
+  EXPECT_THAT(
+      read.messages,
+      testing::ElementsAre("scene:2: note: 'sky.pfm' is twice as wide as high: it is read as a latitude-longitude "
+                           "map with +z up, as imgtool makeequiarea does; pbrt only takes square equal-area maps"));
+  const Light measured = read.get<Light>(1);
+  EXPECT_NEAR(read.scene.spectra.luminance(measured.spectrum) * measured.scale, 10 / (pi / 2), 0.01)
+      << "as if converted";
+}
+
+TEST(PbrtLights, AnImageOfAnotherShapeOrMissingIsAnError) {
+  const TemporaryFolder folder;
+  folder.write("wide.pfm", pfm(8, 5, {1, 1, 1}));
   const std::string light = "LightSource \"infinite\" \"string filename\" ";
   const ReadScene read =
       read_scene_at(folder.write("scene", "Camera \"perspective\" WorldBegin\n" + light + "\"wide.pfm\"\n" + light +
@@ -186,27 +204,131 @@ TEST(PbrtLights, AnImageThatIsNotSquareOrMissingIsAnError) {
   EXPECT_EQ(read.diagnostics.error_count(), 4u);
   EXPECT_EQ(
       read.messages[0],
-      "scene:2: error: LightSource \"infinite\": 'wide.pfm' has 8 x 4 pixels; pbrt's equal-area images are square");
+      "scene:2: error: LightSource \"infinite\": 'wide.pfm' has 8 x 5 pixels; expected a square (an equal-area map) or "
+      "twice as wide as high (a latitude-longitude map)");
   EXPECT_EQ(read.diagnostics.all()[1].line, 3u);
   EXPECT_EQ(read.diagnostics.all()[2].message, "LightSource \"infinite\": 'L' and 'filename' exclude each other");
   EXPECT_EQ(read.count<Light>(), 0u);
 }
 
-TEST(PbrtLights, WhatIsLeftOutIsSaid) {
+TEST(PbrtLights, ThereMayBeSeveralEnvironments) {
   const ReadScene read =
-      read_world(std::string("LightSource \"projection\" \"float fov\" 10\nLightSource \"projection\"\nLightSource ") +
-                 "\"goniometric\"\n" + "LightSource \"infinite\" \"point3 portal\" [0 0 0 1 0 0 1 1 0 0 1 0]\n" +
-                 "ObjectBegin \"lamp\" AreaLightSource \"diffuse\"" + sphere + "ObjectEnd ObjectInstance \"lamp\"");
+      read_world("LightSource \"infinite\" Rotate 30 1 0 0 LightSource \"infinite\" \"float scale\" 3");
   EXPECT_TRUE(read.ok);
-  EXPECT_THAT(
-      read.messages,
-      testing::ElementsAre(
-          "scene:2: warning: light source \"projection\" is not supported yet; it is left out",
-          "scene:4: warning: light source \"goniometric\" is not supported yet; it is left out",
-          "scene:5: warning: LightSource \"infinite\": 'portal' is not supported yet; the light is not restricted to "
-          "it",
-          "scene:6: warning: shapes of an object emit no light, as in pbrt; this AreaLightSource does nothing"));
-  EXPECT_EQ(read.count<Light>(), 1u);
+  EXPECT_THAT(read.messages, testing::IsEmpty());
+  EXPECT_EQ(read.count<Light>(), 2u);
+}
+
+TEST(PbrtLights, APortalStandsInWorldSpace) {
+  const std::string portal = "\"point3 portal\" [1 0 0 1 2 0 1 2 3 1 0 3]";
+  const ReadScene read = read_world("Translate 5 0 0 LightSource \"infinite\" \"float scale\" 2 " + portal);
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  EXPECT_THAT(read.messages, testing::IsEmpty());
+  const Light light = read.get<Light>();
+  EXPECT_EQ(light.has_portal, 1u);
+  EXPECT_EQ(light.portal_corner, glm::vec3(1, 0, 0));
+  EXPECT_EQ(light.portal_x, glm::vec3(0, 0, 3)) << "pbrt's frame has the edge to the last point first";
+  EXPECT_EQ(light.portal_y, glm::vec3(0, 2, 0));
+  EXPECT_NEAR(luminance(read), 2, 1e-5);
+  const std::string with = "LightSource \"infinite\" " + portal;
+  EXPECT_NEAR(luminance_of(with + " \"rgb L\" [.5 .5 .5] \"float illuminance\" 10"), 10 / (2 * pi), 1e-4);
+  // The mean of the constant spectrum's luminance: its own against 683 times the integral of ybar.
+  EXPECT_NEAR(luminance_of(with + " \"spectrum L\" [200 0.5 1000 0.5]"), 0.5, 1e-4);
+}
+
+TEST(PbrtLights, BadPortalsAreErrors) {
+  const std::string light = "LightSource \"infinite\" \"point3 portal\" ";
+  const ReadScene read = read_world(light + "[0 0 0 1 0 0 1 1 0]\n" + light + "[0 0 0 1 0 0 2 1 0 1 1 0]\n" + light +
+                                    "[0 0 0 1 0 0 1 1 0 0 1 1]\n" + light + "[0 0 0 0 0 0 1 1 0 0 1 0]");
+  EXPECT_EQ(read.diagnostics.error_count(), 4u);
+  EXPECT_EQ(read.messages[0], "scene:2: error: LightSource \"infinite\": 'portal' has 3 points; expected 4");
+  EXPECT_EQ(
+      read.messages[1],
+      "scene:3: error: LightSource \"infinite\": 'portal': its corners are not those of a rectangle, one after the "
+      "other");
+  EXPECT_EQ(read.diagnostics.all()[2].line, 4u);
+  EXPECT_EQ(read.messages[3], "scene:5: error: LightSource \"infinite\": 'portal': two of its corners coincide");
+}
+
+TEST(PbrtLights, AGoniometricLightTakesTheMeanOfItsImagesChannels) {
+  const TemporaryFolder folder;
+  folder.write("lamp.pfm", pfm(8, 8, {1, 2, 6}));
+  const std::string light = "LightSource \"goniometric\" \"string filename\" \"lamp.pfm\" ";
+  const auto at = [&](const std::string& parameters) {
+    return read_scene_at(
+        folder.write("scene", "Camera \"perspective\" WorldBegin Translate 1 2 3\n" + light + parameters));
+  };
+  const ReadScene read = at("\"rgb I\" [2 2 2] \"float scale\" 3");
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  const Light light_of = read.get<Light>();
+  EXPECT_EQ(light_of.kind, LightKind::goniometric);
+  EXPECT_NEAR(luminance(read), 6, 1e-4);
+  EXPECT_EQ(read.scene.images[light_of.image].mapping, ImageMapping::equal_area);
+  for (const float value : read.scene.images[light_of.image].rgb) EXPECT_EQ(value, 3);
+  const auto m = read.scene.registry.get<Transform>(read.entity<Light>());
+  EXPECT_EQ(glm::vec3(m.row0.w, m.row1.w, m.row2.w), glm::vec3(1, 2, 3));
+  EXPECT_EQ(glm::vec3(m.row0.z, m.row1.z, m.row2.z), glm::vec3(0, 1, 0)) << "the image's +z along +y";
+  EXPECT_EQ(glm::vec3(m.row0.y, m.row1.y, m.row2.y), glm::vec3(0, 0, 1));
+  // 4 pi times the mean of 3.
+  EXPECT_NEAR(luminance(at("\"float power\" 100 \"float scale\" 2")), 200 / (12 * pi), 1e-4);
+  const ReadScene without = read_world("LightSource \"goniometric\" \"float power\" 100");
+  EXPECT_EQ(without.get<Light>().kind, LightKind::point);
+  EXPECT_NEAR(luminance(without), 100 / (4 * pi), 1e-4);
+  EXPECT_EQ(without.messages.at(0),
+            "scene:2: warning: LightSource \"goniometric\": there is no 'filename'; it shines alike in all directions");
+}
+
+TEST(PbrtLights, AProjectionHasItsImageFieldOfViewAndPower) {
+  const TemporaryFolder folder;
+  folder.write("slide.pfm", pfm(16, 8, {1, 1, 1}));
+  const std::string light = "LightSource \"projection\" \"string filename\" \"slide.pfm\" ";
+  const auto at = [&](const std::string& parameters) {
+    return read_scene_at(folder.write("scene", "Camera \"perspective\" WorldBegin\n" + light + parameters));
+  };
+  const ReadScene read = at("\"float scale\" 3 \"float fov\" 40");
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  EXPECT_EQ(read.get<Light>().kind, LightKind::projection);
+  EXPECT_EQ(read.get<Light>().fov_deg, 40);
+  EXPECT_NEAR(luminance(read), 3, 1e-4);
+  EXPECT_EQ(at("").get<Light>().fov_deg, 90);
+  // The solid angle of a pyramid with half tangents a = 2 and b = 1: 4 asin(a b / sqrt((1 + a^2) (1 + b^2))); pbrt sums
+  // the middles of the pixels.
+  EXPECT_NEAR(luminance(at("\"float power\" 100")) * 4 * std::asin(2 / std::sqrt(10.0)), 100, 0.5);
+  const ReadScene bad = read_world("LightSource \"projection\"\nLightSource \"projection\" \"float fov\" 180");
+  EXPECT_EQ(bad.messages.at(0), "scene:2: error: LightSource \"projection\": a projection needs a 'filename'");
+  EXPECT_EQ(bad.messages.at(1),
+            "scene:3: error: LightSource \"projection\": 'fov' is 180; expected less than 180 degrees");
+}
+
+TEST(PbrtLights, AShapeMayEmitAnImage) {
+  const TemporaryFolder folder;
+  folder.write("screen.pfm", pfm(4, 2, {2, 2, 2}));
+  const auto at = [&](const std::string& parameters) {
+    return read_scene_at(folder.write(
+        "scene", "Camera \"perspective\" WorldBegin\nAreaLightSource \"diffuse\" \"string filename\" \"screen.pfm\" " +
+                     parameters + sphere));
+  };
+  const ReadScene read = at("\"float scale\" 3 \"bool twosided\" true");
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  EXPECT_THAT(read.messages, testing::IsEmpty());
+  EXPECT_EQ(read.get<Light>().kind, LightKind::area);
+  ASSERT_EQ(read.get<Light>().image, 0u);
+  EXPECT_EQ(read.get<Light>().two_sided, 1u);
+  EXPECT_NEAR(luminance(read), 3, 1e-4);
+  // Half of what the scale would be for a white of 1.
+  EXPECT_NEAR(luminance(at("\"float power\" 100")), 100 / (4 * pi * pi) / 2, 1e-4);
+  EXPECT_EQ(at("\"rgb L\" [1 1 1]").messages.at(0),
+            "scene:2: error: AreaLightSource \"diffuse\": 'L' and 'filename' exclude each other");
+}
+
+TEST(PbrtLights, LampsOfObjectsAreLeftOut) {
+  const ReadScene read = read_world(std::string("ObjectBegin \"lamp\" AreaLightSource \"diffuse\"") + sphere +
+                                    "ObjectEnd ObjectInstance \"lamp\"");
+  EXPECT_TRUE(read.ok);
+  EXPECT_THAT(read.messages,
+              testing::ElementsAre("scene:2: warning: shapes of an object emit no light, as in pbrt; this "
+                                   "AreaLightSource does nothing"));
+  EXPECT_EQ(read.count<Light>(), 0u);
 }
 
 }  // namespace

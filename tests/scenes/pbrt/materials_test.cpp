@@ -92,25 +92,6 @@ TEST(PbrtMaterials, DielectricsTakeANumberATableOrAGlass) {
   EXPECT_NEAR(table.value(table.m.eta, 400), 1.4, 1e-6) << "an index keeps its last value";
 }
 
-TEST(PbrtMaterials, CoatedDiffuseBecomesOurCoat) {
-  MaterialRead standard("Material \"coateddiffuse\"");
-  EXPECT_EQ(standard.m.kind, MaterialKind::coated);
-  EXPECT_NEAR(standard.value(standard.m.reflectance, 550), 0.5, 1e-6);
-  EXPECT_NEAR(standard.value(standard.m.eta, 550), 1.5, 1e-6);
-  EXPECT_EQ(standard.m.alpha_x, 0);
-  MaterialRead rough(
-      "Material \"coateddiffuse\" \"rgb reflectance\" [.2 .2 .2] \"float eta\" 1.9 \"float roughness\" .04");
-  EXPECT_NEAR(rough.value(rough.m.reflectance, 550), 0.2, 1e-6);
-  EXPECT_NEAR(rough.value(rough.m.eta, 550), 1.9, 1e-6);
-  EXPECT_NEAR(rough.m.alpha_x, 0.2, 1e-6);
-  EXPECT_EQ(rough.m.alpha_x, rough.m.alpha_y);
-  MaterialRead uneven(
-      "Material \"coateddiffuse\" \"float uroughness\" .1 \"float vroughness\" .4 \"bool remaproughness\" false");
-  EXPECT_NEAR(uneven.m.alpha_x, 0.2, 1e-6);
-  EXPECT_EQ(uneven.m.alpha_x, uneven.m.alpha_y);
-  EXPECT_THAT(uneven.messages, testing::Contains(testing::HasSubstr("the geometric mean of the two")));
-}
-
 TEST(PbrtMaterials, DielectricsMayBeRoughOrThin) {
   MaterialRead frosted("Material \"dielectric\" \"float roughness\" .25");
   EXPECT_EQ(frosted.m.kind, MaterialKind::dielectric);
@@ -169,9 +150,8 @@ TEST(PbrtMaterials, WhatReplacesTheUnsupportedIsSaidOncePerKind) {
   const ReadScene read = read_world(
       std::string("Texture \"wood\" \"spectrum\" \"fbm\" Texture \"glass\" \"spectrum\" \"fbm\"\n") +
       "Material \"dielectric\" \"texture eta\" \"glass\"" + sphere +
-      "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere +
-      "Material \"coateddiffuse\" \"rgb reflectance\" [.2 .2 .2] \"float thickness\" 1" + sphere +
-      "Material \"hair\" \"float eumelanin\" 1" + sphere + "Material \"hair\" \"float eumelanin\" 1" + sphere +
+      "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere + "Material \"hair\" \"float eumelanin\" 1" +
+      sphere + "Material \"hair\" \"float eumelanin\" 1" + sphere +
       "Material \"diffuse\" \"texture displacement\" \"wood\" \"string normalmap\" \"n.png\"" + sphere);
   EXPECT_TRUE(read.ok);
   EXPECT_THAT(
@@ -179,14 +159,9 @@ TEST(PbrtMaterials, WhatReplacesTheUnsupportedIsSaidOncePerKind) {
       testing::ElementsAre(
           "scene:2: warning: texture \"fbm\" is not supported yet; what it would colour gets its default value",
           "scene:3: warning: textures for 'eta' are not supported yet; it gets its default value",
-          "scene:5: warning: material \"coateddiffuse\": its layer has no thickness here and absorbs nothing, and all "
-          "internal reflections count; it looks lighter than pbrt's",
-          "scene:5: warning: Material \"coateddiffuse\": 'thickness' is not supported yet; the layer has no thickness "
-          "and scatters nothing",
-          "scene:6: warning: material \"hair\" is not supported yet; it is rendered as diffuse with reflectance 0.5",
-          "scene:8: warning: Material \"diffuse\": 'displacement' is not supported yet; the surface stays as it is",
-          "scene:8: warning: Material \"diffuse\": 'normalmap' is not supported yet; the surface stays as it is"));
-  EXPECT_NEAR(read.scene.spectra.value(read.material(2).reflectance, 500), 0.2, 1e-6);
+          "scene:5: warning: material \"hair\" is not supported yet; it is rendered as diffuse with reflectance 0.5",
+          "scene:7: warning: Material \"diffuse\": 'displacement' is not supported yet; the surface stays as it is",
+          "scene:7: warning: Material \"diffuse\": 'normalmap' is not supported yet; the surface stays as it is"));
 }
 
 TEST(PbrtMaterials, ShapesOfAnInterfaceThatSeparateNothingAreLeftOut) {

@@ -88,6 +88,8 @@ INSTANTIATE_TEST_SUITE_P(
         {"LookAt 0 0 0 0 5 0 0 1 0",
          "2: error: this transformation is undefined: eye and target coincide, or the up vector points along the view"},
         {"CoordSysTransform \"camara\"", "2: error: there is no coordinate system 'camara' (did you mean 'camera'?)"},
+        {"TransformTimes 0 1", "2: error: TransformTimes must stand before WorldBegin"},
+        {"ActiveTransform EndTime Scale 0 1 1", "2: error: this transformation is singular: it flattens space"},
         {"ActiveTransform Both", "2: error: ActiveTransform expects All, StartTime or EndTime, not 'Both'"},
         {"\n\nAttributeBegin", "4: error: this AttributeBegin is never ended"},
         {"AttributeEnd", "2: error: AttributeEnd without AttributeBegin"},
@@ -216,6 +218,28 @@ INSTANTIATE_TEST_SUITE_P(
          "1: error: Integrator \"path\": 'maxdepth' is -1, but must be at least 0"},
         {"Option \"seed\" -1", "1: error: Option \"seed\" expects a non-negative integer, not '-1'"},
         {"Option \"seed\"", "1: error: Option \"seed\" has no value"},
+        {"TransformTimes 1 1", "1: error: the motion ends at 1 s but starts at 1 s"},
+        {"Camera \"sphrical\"", "1: error: there is no Camera \"sphrical\" (did you mean 'spherical'?)"},
+        {"Camera \"spherical\" \"string mapping\" \"equirect\"",
+         "1: error: Camera \"spherical\": there is no mapping \"equirect\""},
+        {"Option \"seed\" 1.5", "1: error: Option \"seed\" expects a non-negative integer, not '1.5'"},
+        {"Option \"disablepixeljitter\" 1", "1: error: Option \"disablepixeljitter\" expects true or false, not '1'"},
+        {"Option \"msereferenceimage\" a", "1: error: Option \"msereferenceimage\" expects a quoted string, not 'a'"},
+        {"Option \"displacementedgescale\" \"1\"",
+         "1: error: Option \"displacementedgescale\" expects a number, not \"1\""},
+        {"Option \"force\" true", "1: error: there is no Option \"force\""},
+        {"Option \"sed\" 1", "1: error: there is no Option \"sed\" (did you mean 'seed'?)"},
+        {"Film \"rbg\"", "1: error: there is no Film \"rbg\" (did you mean 'rgb'?)"},
+        {"Film \"rgb\" \"string sensor\" \"canon_eos_5\"",
+         "1: error: Film \"rgb\": there is no sensor \"canon_eos_5\" (did you mean 'canon_eos_5d'?)"},
+        {"Film \"rgb\" \"float cropwindow\" [0 1.5 0 1]",
+         "1: error: Film \"rgb\": 'cropwindow' expects x_min x_max y_min y_max, each minimum below its maximum, from 0 "
+         "up to 1 and 1"},
+        {"Film \"rgb\" \"integer pixelbounds\" [4 4 0 1]",
+         "1: error: Film \"rgb\": 'pixelbounds' expects x_min x_max y_min y_max, each minimum below its maximum, from "
+         "0 "
+         "up to 1280 and 720"},
+        {"PixelFilter \"gausian\"", "1: error: there is no PixelFilter \"gausian\" (did you mean 'gaussian'?)"},
         {"Shape \"sphere\"", "1: error: Shape must stand after WorldBegin"},
     }));
 

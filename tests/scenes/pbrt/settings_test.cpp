@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "tests/scenes/pbrt/read_text.h"
 
 namespace metamer {
@@ -48,6 +50,14 @@ TEST(PbrtSettings, CamerasHaveFovLensAndScreenWindow) {
   EXPECT_EQ(o.screen_window, glm::vec4(-3, 3, -2, 2));
 }
 
+TEST(PbrtSettings, SphericalCamerasHaveAMapping) {
+  EXPECT_EQ(camera("\"spherical\"").kind, CameraKind::spherical);
+  EXPECT_EQ(camera("\"spherical\"").mapping, ImageMapping::equal_area);
+  EXPECT_EQ(camera("\"spherical\" \"string mapping\" \"equalarea\"").mapping, ImageMapping::equal_area);
+  const Camera c = camera("\"spherical\" \"string mapping\" \"equirectangular\" \"float shutterclose\" 2");
+  EXPECT_EQ(c.mapping, ImageMapping::latitude_longitude);
+}
+
 TEST(PbrtSettings, ExposureIsTheShuttersTimeTimesIsoOverAHundred) {
   const ReadScene read = read_settings(
       "Film \"rgb\" \"float iso\" 400\nCamera \"perspective\" \"float shutteropen\" 1 \"float shutterclose\" 1.5");
@@ -82,36 +92,82 @@ TEST(PbrtSettings, FiltersHaveTheirOwnDefaults) {
 }
 
 TEST(PbrtSettings, WhatIsUsedInsteadIsSaid) {
-  const ReadScene read = read_settings(R"(Camera "spherical" "string mapping" "equalarea"
+  const ReadScene read = read_settings(R"(Camera "realistic" "string lensfile" "wide.dat"
 Film "gbuffer" "string coordinatesystem" "world" "integer xresolution" 12
 PixelFilter "mitchell" "float B" 0.3
 Sampler "zsobol" "string randomization" "none"
 Integrator "bdpt" "integer maxdepth" 3
 Accelerator "bvh" "string splitmethod" "sah"
-Option "disablepixeljitter" true
+Option "wave-Front" true
 
 
 ColorSpace "rec2020"
-Film "rgb" "float cropwindow" [0 1 0 1] "string sensor" "canon_eos_5d" "string filename" "x.exr" "float diagonal" 20)");
+Film "rgb" "float maxcomponentvalue" 10 "string sensor" "canon_eos_5d" "string filename" "x.exr" "float diagonal" 20)");
   EXPECT_TRUE(read.ok);
   EXPECT_THAT(
       read.messages,
       testing::ElementsAre(
-          "scene:1: warning: Camera \"spherical\" is not supported yet; a perspective camera of 90 degrees is used",
-          "scene:2: warning: Film \"gbuffer\" is not supported yet; its size and exposure are used, it records R G B",
-          "scene:3: warning: PixelFilter \"mitchell\" is not supported yet; gaussian of radius 1.5 and sigma 0.5 "
+          "scene:1: warning: Camera \"realistic\" is not supported; a perspective camera of 90 degrees is used: give "
+          "it the lens's 'fov' instead",
+          "scene:2: warning: Film \"gbuffer\" is not supported; its size and exposure are used, it records R G B",
+          "scene:3: warning: PixelFilter \"mitchell\" is not supported; gaussian of radius 1.5 and sigma 0.5 "
           "pixels is used",
           "scene:4: note: Sampler \"zsobol\": its sample count is used; the points are always Owen-scrambled Sobol "
           "points",
-          "scene:5: warning: Integrator \"bdpt\" is not supported yet; path tracing is used",
+          "scene:5: note: Integrator \"bdpt\" is not supported; path tracing looks for the same light",
           "scene:6: note: Accelerator \"bvh\": Embree's is always used",
-          "scene:7: warning: Option \"disablepixeljitter\" is not supported; it changes nothing",
+          "scene:7: note: Option \"wave-Front\" is not supported; there is one renderer",
           "scene:11: warning: Film \"rgb\": 'sensor' is not supported yet; cie1931 is used",
           "scene:11: note: Film's 'filename' is not used: outputs are named after the scene, or by -o",
-          "scene:11: warning: Film \"rgb\": 'cropwindow' is not supported yet; the whole picture is rendered",
-          "scene:11: warning: pictures in the colour space 'rec2020' are not supported yet; sRGB's primaries are "
-          "used"));
+          "scene:11: warning: Film \"rgb\": 'maxcomponentvalue' is not supported yet; samples are not clamped",
+          "scene:11: warning: pictures in the colour space 'rec2020' are not supported; the EXR has sRGB's primaries, "
+          "and 'metamer develop --display' writes others"));
   EXPECT_EQ(read.scene.settings.max_depth, 3u);
+}
+
+TEST(PbrtSettings, OnlyTheWindowOfTheFilmIsRendered) {
+  const auto window = [](const std::string& film) {
+    const RenderSettings s = settings("Film \"rgb\" \"integer xresolution\" 90 \"integer yresolution\" 70 " + film);
+    const TileRect r = rendered_pixels(s);
+    return std::vector<uint32_t>{r.x0, r.x1, r.y0, r.y1};
+  };
+  using testing::ElementsAre;
+  EXPECT_THAT(window(""), ElementsAre(0, 90, 0, 70));
+  EXPECT_THAT(window("\"float cropwindow\" [0.1 0.7 0 1]"), ElementsAre(9, 63, 0, 70));
+  EXPECT_THAT(window("\"float cropwindow\" [0.101 0.701 0.5 0.51]"), ElementsAre(10, 64, 35, 36)) << "rounded up";
+  EXPECT_THAT(window("\"integer pixelbounds\" [3 77 69 70]"), ElementsAre(3, 77, 69, 70));
+  for (int x = 0; x < 90; ++x)
+    EXPECT_THAT(window(fmt::format("\"integer pixelbounds\" [{} {} 0 70]", x, x + 1)), ElementsAre(x, x + 1, 0, 70));
+}
+
+TEST(PbrtSettings, OptionsAreFollowedOrNoted) {
+  EXPECT_TRUE(settings("").pixel_jitter);
+  EXPECT_FALSE(settings("Option \"disablepixeljitter\" true").pixel_jitter);
+  EXPECT_TRUE(settings("Option \"disablepixeljitter\" false").pixel_jitter);
+  EXPECT_THAT(read_settings("Camera \"perspective\"\nOption \"forcediffuse\" true").messages,
+              testing::ElementsAre("scene:2: note: Option \"forcediffuse\" is not supported; materials stay what they "
+                                   "are"));
+  EXPECT_THAT(read_settings("Camera \"perspective\"\nOption \"forcediffuse\" false").messages, testing::IsEmpty());
+}
+
+// Which remarks --strict refuses: those that the picture depends on.
+TEST(PbrtSettings, StrictAllowsWhatDoesNotChangeThePicture) {
+  const auto strict_errors = [](const std::string& text) {
+    ReadScene read = read_settings("Camera \"perspective\"\n" + text);
+    EXPECT_FALSE(read.diagnostics.all().empty()) << text;
+    EXPECT_FALSE(read.diagnostics.has_errors()) << text;
+    read.diagnostics.apply_strict();
+    return read.diagnostics.error_count();
+  };
+  for (const char* harmless : {"Sampler \"halton\"", "Accelerator \"kdtree\"", "Film \"rgb\" \"string filename\" \"a\"",
+                               "Option \"rendercoordsys\" \"world\"", "Option \"pixelstats\" true",
+                               "Option \"msereferenceimage\" \"a.exr\"", "Option \"wavefront\" true"})
+    EXPECT_EQ(strict_errors(harmless), 0u) << harmless;
+  for (const char* harmful : {"Integrator \"sppm\"", "Integrator \"ambientocclusion\"", "PixelFilter \"sinc\"",
+                              "Film \"gbuffer\"", "Film \"spectral\"", "Film \"rgb\" \"float maxcomponentvalue\" 2",
+                              "Film \"rgb\" \"string sensor\" \"nikon_d850\"", "Option \"forcediffuse\" true",
+                              "Film \"rgb\" \"float whitebalance\" 5000", "ColorSpace \"rec2020\" Film \"rgb\""})
+    EXPECT_EQ(strict_errors(harmful), 1u) << harmful;
 }
 
 TEST(PbrtSettings, ASpectralFilmRecordsAsManyBandsAsItHasBuckets) {

@@ -144,18 +144,11 @@ TEST(PbrtTextures, EveryMistakeIsSaidWithItsLine) {
 
 TEST(PbrtTextures, WhatIsNotSupportedIsSaidOncePerKind) {
   const TextureRead r(
-      "Texture \"a\" \"spectrum\" \"marble\"\nTexture \"t\" \"spectrum\" \"marble\"\n"
-      "Texture \"c\" \"spectrum\" \"checkerboard\" \"string mapping\" \"planar\" \"vector3 v1\" [1 0 0]\n"
-      "Texture \"d\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3\n" +
-      use);
+      "Texture \"a\" \"spectrum\" \"ptex\" \"string filename\" \"x\"\nTexture \"t\" \"spectrum\" \"ptex\"\n" + use);
   EXPECT_TRUE(r.read.ok);
   EXPECT_THAT(r.read.messages,
-              ElementsAre("scene:2: warning: texture \"marble\" is not supported yet; what it would colour gets its "
-                          "default value",
-                          "scene:4: warning: Texture \"checkerboard\": 'mapping' is not supported yet; the texture "
-                          "follows the surface's u and v",
-                          "scene:5: warning: Texture \"checkerboard\": 'dimension' is not supported yet; the board is "
-                          "that of two dimensions"));
+              ElementsAre("scene:2: warning: texture \"ptex\" is not supported; what it would colour gets its "
+                          "default value"));
   EXPECT_EQ(r.read.material().reflectance_texture, no_index);
   EXPECT_NEAR(r.read.scene.spectra.value(r.read.material().reflectance, 550), 0.5, 1e-6);
 }

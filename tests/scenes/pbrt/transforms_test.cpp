@@ -88,15 +88,93 @@ TEST(PbrtTransforms, MirrorsAreKeptAndReverseOrientationToggles) {
   EXPECT_EQ(read.get<Geometry>(2).flip_normal, 0u);
 }
 
-TEST(PbrtTransforms, MotionIsIgnoredWithOneWarning) {
-  const ReadScene read = read_world(
-      std::string("TransformTimes 0 1 ActiveTransform EndTime Translate 9 9 9\nActiveTransform All Translate 1 0 0\n") +
+Transform end_of(const Motion& motion) { return {motion.row0, motion.row1, motion.row2}; }
+
+TEST(PbrtTransforms, ActiveTransformMovesOneEndOfTheMotion) {
+  const ReadScene read = read_text(
+      std::string("TransformTimes 0.5 2 Camera \"perspective\" WorldBegin\nTranslate 1 0 0 ActiveTransform EndTime "
+                  "Translate 0 2 0 ActiveTransform StartTime Translate 0 0 3 ActiveTransform All Translate 4 0 0\n") +
       sphere);
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  EXPECT_THAT(read.messages, testing::IsEmpty());
+  expect_near(image(shape_transform(read), {}), {5, 0, 3});
+  ASSERT_EQ(read.count<Motion>(), 1u);
+  expect_near(image(end_of(read.get<Motion>()), {}), {5, 2, 0});
+  EXPECT_EQ(read.get<Motion>().start_time, 0.5f);
+  EXPECT_EQ(read.get<Motion>().end_time, 2.0f);
+}
+
+TEST(PbrtTransforms, EveryTransformGoesToWhatIsActive) {
+  const ReadScene read = read_world(std::string("ActiveTransform EndTime\n") +
+                                    "Scale 2 2 2 Rotate 90 0 0 1 ConcatTransform [1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1]\n" +
+                                    sphere + "Identity LookAt 0 0 5 0 0 0 0 1 0\n" + sphere +
+                                    "Transform [1 0 0 0 0 1 0 0 0 0 1 0 7 0 0 1]\n" + sphere + "Identity\n" + sphere);
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  for (uint32_t n = 0; n < 4; ++n) expect_near(image(shape_transform(read, n), {1, 2, 3}), {1, 2, 3});
+  ASSERT_EQ(read.count<Motion>(), 3u) << "the last stands still";
+  expect_near(image(end_of(read.get<Motion>(0)), {}), {0, 2, 0});
+  expect_near(image(end_of(read.get<Motion>(1)), {}), {0, 0, 5});
+  expect_near(image(end_of(read.get<Motion>(2)), {}), {7, 0, 0});
+}
+
+TEST(PbrtTransforms, WhatIsActiveEndsWithItsBlockAndCoordinateSystemsHaveBothEnds) {
+  const ReadScene read = read_world(std::string("AttributeBegin ActiveTransform EndTime Translate 1 0 0 "
+                                                "CoordinateSystem \"moving\" AttributeEnd Translate 0 1 0\n") +
+                                    sphere + "ActiveTransform StartTime CoordSysTransform \"moving\"\n" + sphere);
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  ASSERT_EQ(read.count<Motion>(), 1u);
+  expect_near(image(shape_transform(read, 0), {}), {0, 1, 0});
+  expect_near(image(shape_transform(read, 1), {}), {0, 0, 0});
+  expect_near(image(end_of(read.get<Motion>()), {}), {1, 0, 0});
+}
+
+TEST(PbrtTransforms, CamerasMoveByTheInverses) {
+  const ReadScene read = read_text(
+      "Translate 0 0 -7 ActiveTransform EndTime Translate -2 0 0 ActiveTransform All Camera \"perspective\" \"float "
+      "shutteropen\" 0.25 \"float shutterclose\" 0.75\nWorldBegin\nCoordSysTransform \"camera\"\n" +
+      std::string(sphere));
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  const Entity camera = read.entity<Camera>();
+  expect_near(image(read.scene.registry.get<Transform>(camera), {}), {0, 0, 7});
+  expect_near(image(end_of(read.scene.registry.get<Motion>(camera)), {}), {2, 0, 7});
+  EXPECT_EQ(read.scene.settings.shutter_open, 0.25);
+  EXPECT_EQ(read.scene.settings.shutter_close, 0.75);
+  EXPECT_FLOAT_EQ(read.scene.settings.sensor_scale, 0.5f);
+  expect_near(image(end_of(read.scene.registry.get<Motion>(read.entity<Geometry>())), {}), {2, 0, 7});
+}
+
+TEST(PbrtTransforms, LightsThatMoveStandAndAreWarnedAbout) {
+  const ReadScene read = read_world(std::string("ActiveTransform EndTime Translate 1 0 0\nLightSource \"point\"\n") +
+                                    "AreaLightSource \"diffuse\"\n" + sphere);
   EXPECT_TRUE(read.ok);
-  EXPECT_THAT(read.messages,
-              testing::ElementsAre(
-                  "scene:2: warning: motion blur is not supported yet; everything stands as when the shutter opens"));
-  expect_near(image(shape_transform(read), {}), {1, 0, 0});
+  EXPECT_EQ(read.count<Motion>(), 0u);
+  EXPECT_THAT(read.messages, testing::ElementsAre("scene:3: warning: lights that move are not supported; they stand as "
+                                                  "at the start of their motion, as in pbrt"));
+}
+
+// The instance and the shape within each have a motion of their own.
+TEST(PbrtTransforms, ShapesMoveInInstancesThatMove) {
+  const ReadScene read =
+      read_world(std::string("ObjectBegin \"wheel\"\nAttributeBegin ActiveTransform EndTime Rotate 90 0 "
+                             "0 1\n") +
+                 sphere + "AttributeEnd Translate 0 3 0\n" + sphere +
+                 "ObjectEnd\nObjectInstance \"wheel\"\nTranslate 0 0 1 ActiveTransform EndTime Translate "
+                 "5 0 0 ObjectInstance \"wheel\"");
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  const Registry& registry = read.scene.registry;
+  ASSERT_EQ(read.count<Geometry>(), 4u);
+  const auto parent_of = [&](uint32_t n) { return registry.get<Parent>(read.entity<Geometry>(n)).entity; };
+  // Of the instance that stands, the shape that moves has a parent of its own, the other one none.
+  EXPECT_FALSE(registry.has<Motion>(parent_of(0)));
+  EXPECT_TRUE(registry.has<Motion>(read.entity<Geometry>(0)));
+  EXPECT_TRUE(parent_of(1).is_null());
+  expect_near(image(shape_transform(read, 1), {}), {0, 3, 0});
+  ASSERT_TRUE(registry.has<Motion>(parent_of(2)));
+  EXPECT_EQ(parent_of(2), parent_of(3)) << "one entity for the instance";
+  EXPECT_FALSE(registry.has<Motion>(read.entity<Geometry>(3)));
+  expect_near(image(registry.get<Transform>(parent_of(2)), {}), {0, 0, 1});
+  expect_near(image(end_of(registry.get<Motion>(parent_of(2))), {}), {5, 0, 1});
+  expect_near(image(end_of(registry.get<Motion>(read.entity<Geometry>(2))), {1, 0, 0}), {0, 1, 0});
 }
 
 TEST(PbrtTransforms, InstancesShareTheMeshUnderTheProductOfBothTransforms) {

@@ -49,6 +49,50 @@ TEST_F(RenderCommand, IsSilentWhenQuiet) {
   EXPECT_EQ(result.out + result.err, "");
 }
 
+TEST_F(RenderCommand, ACropHasThePixelsOfTheWhole) {
+  std::string cropped(small_scene);
+  cropped.replace(cropped.find("\"samples\""), 0, "\"crop\": [0.3, 0.8, 0.25, 1], ");
+  folder_.write("crop.json", cropped);
+  ASSERT_EQ(run({"render", "small.json", "-q"}).exit_code, 0);
+  ASSERT_EQ(run({"render", "crop.json", "-q"}).exit_code, 0);
+  Film whole, crop;
+  FrameHeader header;
+  ASSERT_EQ(read_film((folder() / "small.exr").string(), whole, header), std::nullopt);
+  ASSERT_EQ(read_film((folder() / "crop.exr").string(), crop, header), std::nullopt);
+  ASSERT_EQ(crop.width(), 13u - 5u);  // 16 pixels: 4.8 to 12.8, rounded up
+  ASSERT_EQ(crop.height(), 12u - 3u);
+  EXPECT_EQ(header.window.x, 5u);
+  EXPECT_EQ(header.window.y, 3u);
+  EXPECT_EQ(header.window.full_width, 16u);
+  for (size_t y = 0; y < crop.height(); ++y)
+    for (size_t x = 0; x < crop.width(); ++x)
+      EXPECT_EQ(mean_xyz(crop, y * crop.width() + x), mean_xyz(whole, (y + 3) * whole.width() + x + 5))
+          << x << "," << y;
+}
+
+TEST_F(RenderCommand, StrictMakesErrorsOfWhatIsNotSupported) {
+  const std::string world = "WorldBegin\nLightSource \"infinite\"\n";
+  folder_.write("good.pbrt",
+                "Camera \"perspective\"\nSampler \"halton\" \"integer pixelsamples\" 1\n"
+                "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\n" +
+                    world);
+  folder_.write("bad.pbrt",
+                "Camera \"perspective\"\nPixelFilter \"sinc\"\nIntegrator \"bdpt\"\n"
+                "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\n" +
+                    world);
+  EXPECT_EQ(run({"render", "good.pbrt", "--strict"}).exit_code, 0);
+  EXPECT_EQ(run({"render", "bad.pbrt", "-q", "--spp", "1", "-o", "loose.exr"}).exit_code, 0);
+  for (const Arguments& command : std::vector<Arguments>{{"render", "bad.pbrt", "--strict", "-q"},
+                                                         {"info", "bad.pbrt", "--strict"},
+                                                         {"compare", "bad.pbrt", "--strict"}}) {
+    const ProgramResult result = run(command);
+    EXPECT_EQ(result.exit_code, 2) << command[0];
+    EXPECT_THAT(result.err, AllOf(HasSubstr("bad.pbrt:2: error: PixelFilter \"sinc\" is not supported"),
+                                  HasSubstr("bad.pbrt:3: error: Integrator \"bdpt\" is not supported")));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder() / "bad.exr"));
+}
+
 TEST_F(RenderCommand, GivesTheSameBytesForAnyThreadsAndTiles) {
   const Arguments common = {"render", "small.json", "-q", "--size", "70x50", "--spp", "5", "-o", "a.exr"};
   std::set<std::string> exr, png;

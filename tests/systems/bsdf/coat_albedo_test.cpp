@@ -104,7 +104,7 @@ TEST(CoatAlbedo, TheTableStaysWithinItsStatedError) {
       reference::CoatOptics optics;
       optics.alpha = alpha;
       optics.schlick = schlick;
-      optics.rows = add_coat_rows(alpha, schlick, 1.45, 1.538, table);
+      optics.rows = add_coat_rows({alpha, schlick, false, 0}, 1.45, 1.538, table);
       optics.table = table.data();
       EXPECT_GT(optics.rows.last_pair, 2u);
       double rough_error = 0, average_error = 0;
@@ -127,7 +127,7 @@ TEST(CoatAlbedo, TheAverageBelongsToTheInterpolatedAlbedo) {
   Column<float> table;
   reference::CoatOptics optics;
   optics.alpha = 0.2;
-  optics.rows = add_coat_rows(0.2, false, 1.5, 1.5, table);
+  optics.rows = add_coat_rows({0.2, false, false, 0}, 1.5, 1.5, table);
   optics.table = table.data();
   double sum = 0;
   constexpr int cells = 200000;

@@ -57,6 +57,9 @@ std::vector<Coat> some_coats() {
   coats.emplace_back(0.0, 0.6, 0.8);
   coats.emplace_back(0.3, 0.6, 0.8);
   coats.emplace_back(0.0, 1.45, 1.45, true);
+  coats.emplace_back(0.0, 0.0, 1.3, 1.75, Coat::Layered{0.1, 5});
+  coats.emplace_back(0.0, 0.0, 0.6, 0.8, Coat::Layered{0.02, 1});
+  coats.emplace_back(0.1, 0.4, 1.3, 1.75, Coat::Layered{0.5, 20});
   return coats;
 }
 
@@ -270,41 +273,44 @@ TEST(Coated, SamplesStayWithinTheirStatedError) {
 
 // Every draw: the body's and a rough surface's against the pdf, a mirror's counted against its probability.
 TEST(Coated, DrawsItsPdfAtEveryAngleAndRoughness) {
-  for (const double alpha : {0.0, 0.15, 0.4, 1.0})
-    for (const double eta : {1.5, 0.8})
-      for (const double theta : {0.0, 45.0, 85.0}) {
-        const Coat coat(alpha, eta, eta);
-        Direction wo = at(theta, 25);
-        if (eta < 1) wo.z = -wo.z;
-        const BsdfCase c = seen_from(wo, 0.5, eta);
-        Random random(17);
-        std::vector<BsdfCase> cases(100000, c);
-        for (BsdfCase& draw : cases)
-          draw.u = random.uniform(), draw.v = random.uniform(), draw.choice = random.uniform();
-        const double share = coat_fresnel(eta, std::cos(theta * degree), false);
-        for_each_target([&] {
-          DirectionHistogram histogram(32, 24);
-          double mirrored = 0;
-          for (const BsdfResult& draw : run_sample_coated(coat, cases)) {
-            if (draw.delta == 1) {
-              ++mirrored;
-              EXPECT_NEAR(draw.value[0] * draw.pdf, share, 2e-3);
-              histogram.reject();
-            } else if (draw.pdf > 0) {
-              histogram.add(draw.wi[0], draw.wi[1], draw.wi[2]);
-            } else {
-              histogram.reject();
-            }
+  std::vector<std::pair<Coat, double>> coats;
+  for (const double eta : {1.5, 0.8}) {
+    for (const double alpha : {0.0, 0.15, 0.4, 1.0}) coats.emplace_back(Coat(alpha, eta, eta), eta);
+    coats.emplace_back(Coat(0, 0, eta, eta, Coat::Layered{0.2, 5}), eta);
+    coats.emplace_back(Coat(0.15, 0.5, eta, eta, Coat::Layered{0.2, 5}), eta);
+  }
+  for (const auto& [coat, eta] : coats)
+    for (const double theta : {0.0, 45.0, 85.0}) {
+      Direction wo = at(theta, 25);
+      if (eta < 1) wo.z = -wo.z;
+      const BsdfCase c = seen_from(wo, 0.5, eta);
+      Random random(17);
+      std::vector<BsdfCase> cases(100000, c);
+      for (BsdfCase& draw : cases) draw.u = random.uniform(), draw.v = random.uniform(), draw.choice = random.uniform();
+      const double share = coat_fresnel(eta, std::cos(theta * degree), false);
+      for_each_target([&] {
+        DirectionHistogram histogram(32, 24);
+        double mirrored = 0;
+        for (const BsdfResult& draw : run_sample_coated(coat, cases)) {
+          if (draw.delta == 1) {
+            ++mirrored;
+            EXPECT_NEAR(draw.value[0] * draw.pdf, share, 2e-3);
+            histogram.reject();
+          } else if (draw.pdf > 0) {
+            histogram.add(draw.wi[0], draw.wi[1], draw.wi[2]);
+          } else {
+            histogram.reject();
           }
-          const auto pdf = [&](double x, double y, double z) {
-            return reference::eval_coated(direction(c.wo), coat.optics(c), {x, y, z}).pdf;
-          };
-          if (mirrored == double(cases.size())) return;  // all is totally reflected
-          const ChiSquare result = histogram.test(pdf, 6);
-          EXPECT_GT(result.p_value, chi_square_level) << alpha << " " << eta << " at " << theta;
-          EXPECT_GT(result.degrees_of_freedom, 10);
-        });
-      }
+        }
+        const auto pdf = [&](double x, double y, double z) {
+          return reference::eval_coated(direction(c.wo), coat.optics(c), {x, y, z}).pdf;
+        };
+        if (mirrored == double(cases.size())) return;  // all is totally reflected
+        const ChiSquare result = histogram.test(pdf, 6);
+        EXPECT_GT(result.p_value, chi_square_level) << coat.alpha << " " << eta << " at " << theta;
+        EXPECT_GT(result.degrees_of_freedom, 10);
+      });
+    }
 }
 
 TEST(Coated, BothSidesAreAlikeAndWhatIsSeenEdgeOnReflectsNothing) {

@@ -71,13 +71,18 @@ TEST(Reciprocity, OfEveryLobeThatSpreads) {
     Evaluate eval;
     Prepare prepare;
     double tolerance, floor;  // relative to f, and to this where f is smaller
-    bool transmits = false;
+    bool transmits = false, is_sheet = false;
   };
   const Coat smooth(0, 1.3, 1.7), smooth_schlick(0, 1.3, 1.7, true), smooth_thin(0, 0.6, 0.8);
   const Coat fine(0.002, 1.3, 1.7), rough(0.1, 1.3, 1.7), dull_schlick(0.7, 1.3, 1.7, true), rough_thin(0.3, 0.6, 0.8);
+  const Coat layered(0, 0, 1.3, 1.7, Coat::Layered{0.1, 5});
+  const Coat uneven(0.1, 0.3, 1.3, 1.7, Coat::Layered{0.1, 5});
   const auto covered = [](const Coat& coat) { return [&](const Cases& c) { return run_eval_coated(coat, c); }; };
   const Prepare dense = cover(1.3f, 1.7f), thin = cover(0.6f, 0.8f);
   const Row rows[] = {{"diffuse", run_eval_diffuse, keep, 3e-6, 1e-24},
+                      {"sheet", run_eval_sheet, keep, 3e-6, 1e-24, false, true},
+                      {"coat over a layer", covered(layered), dense, 4e-6, 1e-24},
+                      {"rough coat over a layer, anisotropic", covered(uneven), dense, 4e-6, 1e-24},
                       {"rough, normalised", run_eval_rough, normalise, 3e-6, 1e-24},
                       {"conductor", run_eval_conductor, keep, 3e-6, 1e-24},
                       {"smooth coat's body", covered(smooth), dense, 4e-6, 1e-24},
@@ -107,7 +112,7 @@ TEST(Reciprocity, OfEveryLobeThatSpreads) {
         }
       EXPECT_LT(worst, row.tolerance) << row.name;
       EXPECT_GT(reflecting, cases.size() / 4) << row.name;
-      if (row.transmits) {
+      if (row.transmits || row.is_sheet) {
         EXPECT_GT(across, cases.size() / 4) << row.name;
       } else {
         EXPECT_EQ(across, 0u) << row.name;

@@ -13,6 +13,7 @@
 #include "systems/bsdf/coated-inl.h"
 #include "systems/bsdf/dielectric-inl.h"
 #include "systems/bsdf/diffuse-inl.h"
+#include "systems/bsdf/diffuse_transmission-inl.h"
 #include "systems/bsdf/ggx-inl.h"
 #include "systems/bsdf/phase-inl.h"
 #include "systems/bsdf/rough-inl.h"
@@ -114,6 +115,22 @@ std::vector<BsdfResult> EvalDiffuse(const std::vector<BsdfCase>& cases) {
 std::vector<BsdfResult> SampleDiffuse(const std::vector<BsdfCase>& cases) {
   return run(cases, [](const Arguments& a) { return of_sample(sample_diffuse(a.wo, a.albedo, a.u, a.v)); });
 }
+SheetOptics sheet(const Arguments& a) {
+  SheetOptics optics;
+  for (int j = 0; j < 4; ++j) optics.reflectance[j] = a.albedo[j], optics.transmittance[j] = a.rough.ks[j];
+  optics.reflected_share = sheet_share(optics);
+  return optics;
+}
+std::vector<BsdfResult> EvalSheet(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) {
+    Results r = nothing();
+    eval_sheet(a.wo, sheet(a), a.wi, r.value, r.pdf);
+    return r;
+  });
+}
+std::vector<BsdfResult> SampleSheet(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) { return of_sample(sample_sheet(a.wo, sheet(a), a.choice, a.u, a.v)); });
+}
 std::vector<BsdfResult> EvalRough(const std::vector<BsdfCase>& cases) {
   return run(cases, [](const Arguments& a) {
     Results r = nothing();
@@ -209,6 +226,8 @@ CoatOptics optics_of(const Coat& coat, const Arguments& a) {
   CoatOptics optics;
   for (int j = 0; j < 4; ++j) optics.albedo[j] = a.albedo[j], optics.eta[j] = a.eta[j];
   optics.schlick = hn::Eq(splat(coat.schlick ? 1.0f : 0.0f), splat(1.0f));
+  optics.thickness = splat(static_cast<float>(coat.thickness));
+  optics.hits = splat(static_cast<float>(coat.hits));
   optics.table = coat.table.data();
   const auto set = [](uint32_t x) { return hn::Set(IntTag(), static_cast<int>(x)); };
   optics.rows = {set(coat.rows.first), set(coat.rows.stride), set(coat.rows.last_pair), splat(coat.rows.eta_least),
@@ -217,21 +236,21 @@ CoatOptics optics_of(const Coat& coat, const Arguments& a) {
 }
 
 std::vector<BsdfResult> EvalCoated(const Coat& coat, const std::vector<BsdfCase>& cases) {
-  const VF alpha = splat(static_cast<float>(coat.alpha));
+  const VF alpha_x = splat(static_cast<float>(coat.alpha)), alpha_y = splat(static_cast<float>(coat.alpha_y));
   return run(cases, [&](const Arguments& a) {
     const CoatOptics optics = optics_of(coat, a);
     Results r = nothing();
     if (coat.alpha == 0) {
       eval_smooth_coat(a.wo, make_smooth_coat_view(a.wo, optics), optics, a.wi, r.value, r.pdf);
     } else {
-      const GgxLobe lobe = make_ggx_lobe(a.wo, alpha, alpha);
+      const GgxLobe lobe = make_ggx_lobe(a.wo, alpha_x, alpha_y);
       eval_rough_coat(lobe, make_rough_coat_view(lobe, optics), optics, a.wi, r.value, r.pdf);
     }
     return r;
   });
 }
 std::vector<BsdfResult> SampleCoated(const Coat& coat, const std::vector<BsdfCase>& cases) {
-  const VF alpha = splat(static_cast<float>(coat.alpha));
+  const VF alpha_x = splat(static_cast<float>(coat.alpha)), alpha_y = splat(static_cast<float>(coat.alpha_y));
   return run(cases, [&](const Arguments& a) {
     const CoatOptics optics = optics_of(coat, a);
     if (coat.alpha == 0) {
@@ -241,7 +260,7 @@ std::vector<BsdfResult> SampleCoated(const Coat& coat, const std::vector<BsdfCas
       r.delta = flag(sample.mirrored);
       return r;
     }
-    const GgxLobe lobe = make_ggx_lobe(a.wo, alpha, alpha);
+    const GgxLobe lobe = make_ggx_lobe(a.wo, alpha_x, alpha_y);
     return of_sample(sample_rough_coat(lobe, make_rough_coat_view(lobe, optics), optics, a.choice, a.u, a.v));
   });
 }
@@ -270,6 +289,8 @@ HWY_AFTER_NAMESPACE();
 namespace metamer {
 HWY_EXPORT(EvalDiffuse);
 HWY_EXPORT(SampleDiffuse);
+HWY_EXPORT(EvalSheet);
+HWY_EXPORT(SampleSheet);
 HWY_EXPORT(EvalRough);
 HWY_EXPORT(SampleRough);
 HWY_EXPORT(EvalConductor);
@@ -289,6 +310,12 @@ std::vector<BsdfResult> run_eval_diffuse(const std::vector<BsdfCase>& cases) {
 }
 std::vector<BsdfResult> run_sample_diffuse(const std::vector<BsdfCase>& cases) {
   return HWY_DYNAMIC_DISPATCH(SampleDiffuse)(cases);
+}
+std::vector<BsdfResult> run_eval_sheet(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(EvalSheet)(cases);
+}
+std::vector<BsdfResult> run_sample_sheet(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(SampleSheet)(cases);
 }
 std::vector<BsdfResult> run_eval_rough(const std::vector<BsdfCase>& cases) {
   return HWY_DYNAMIC_DISPATCH(EvalRough)(cases);

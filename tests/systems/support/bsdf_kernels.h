@@ -29,6 +29,9 @@ using BsdfKernel = std::vector<BsdfResult> (*)(const std::vector<BsdfCase>&);
 
 std::vector<BsdfResult> run_eval_diffuse(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_sample_diffuse(const std::vector<BsdfCase>& cases);
+// transmittance is `ks`
+std::vector<BsdfResult> run_eval_sheet(const std::vector<BsdfCase>& cases);
+std::vector<BsdfResult> run_sample_sheet(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_eval_rough(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_sample_rough(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_eval_conductor(const std::vector<BsdfCase>& cases);

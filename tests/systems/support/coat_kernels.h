@@ -1,6 +1,8 @@
 // The coated BSDF's kernels on lists of cases, as bsdf_kernels.h: `albedo`, `eta`, `choice`, `schlick` of a case count.
 // All cases of a list share one table and roughness.
 #pragma once
+#include <cmath>
+
 #include "systems/bsdf/reference_coat.h"
 #include "tests/systems/support/bsdf_kernels.h"
 
@@ -9,9 +11,25 @@ namespace metamer::testing {
 // The rows for etas in [eta_least, eta_most].
 struct Coat {
   Coat(double alpha_, double eta_least, double eta_most, bool schlick_ = false)
-      : alpha(alpha_), schlick(schlick_), rows(add_coat_rows(alpha, schlick, eta_least, eta_most, table)) {}
-  double alpha;
+      : alpha(alpha_),
+        alpha_y(alpha_),
+        schlick(schlick_),
+        rows(add_coat_rows({alpha, schlick, false, 0}, eta_least, eta_most, table)) {}
+  // pbrt's, with a layer.
+  struct Layered {
+    double thickness;
+    int hits;
+  };
+  Coat(double alpha_x, double alpha_y_, double eta_least, double eta_most, const Layered& layer)
+      : alpha(alpha_x),
+        alpha_y(alpha_y_),
+        schlick(false),
+        thickness(layer.thickness),
+        hits(layer.hits),
+        rows(add_coat_rows({std::sqrt(alpha_x * alpha_y_), false, true, thickness}, eta_least, eta_most, table)) {}
+  double alpha, alpha_y;
   bool schlick;
+  double thickness = 0, hits = -1;
   Column<float> table;
   CoatRows rows;
 
@@ -21,7 +39,10 @@ struct Coat {
             alpha,
             schlick,
             table.data(),
-            rows};
+            rows,
+            alpha_y,
+            thickness,
+            hits};
   }
 };
 

@@ -1,0 +1,72 @@
+#include "scenes/native/write_parts.h"
+
+namespace metamer {
+namespace {
+
+class LightWriter {
+ public:
+  LightWriter(WriteContext& context, const Light& light) : context_(context), light_(light) {}
+
+  JsonText write() {
+    switch (light_.kind) {
+      case LightKind::area: area(); break;
+      case LightKind::point: brightness("point", "intensity"); break;
+      case LightKind::spot: spot(); break;
+      case LightKind::directional: directional(); break;
+      case LightKind::environment: environment(); break;
+    }
+    return object_;
+  }
+
+ private:
+  void brightness(std::string_view type, std::string_view key) {
+    object_.add("type", JsonText::string(type));
+    object_.add(key, context_.spectra.write(light_.spectrum));
+    if (light_.scale != 1) object_.add("scale", JsonText::number(light_.scale));
+  }
+
+  void area() {
+    brightness("area", light_.is_power != 0 ? "power" : "radiance");
+    if (light_.two_sided != 0) object_.add("two_sided", JsonText::boolean(true));
+    if (light_.cosine_power != 0) object_.add("cosine_power", JsonText::number(light_.cosine_power));
+  }
+
+  void spot() {
+    brightness("spot", "intensity");
+    object_.add("cone_angle", JsonText::number(light_.cone_deg));
+    object_.add("falloff_start", JsonText::number(light_.falloff_deg));
+  }
+
+  void directional() {
+    brightness("directional", "irradiance");
+    if (light_.angular_diameter_deg != 0)
+      object_.add("angular_diameter", JsonText::number(light_.angular_diameter_deg));
+  }
+
+  void environment() {
+    brightness("environment", "radiance");
+    if (light_.image == no_index) return;
+    const Image& image = context_.scene.images[light_.image];
+    object_.add("image", JsonText::string(context_.folder + "/" + context_.image_file(light_.image).name));
+    object_.add("mapping", JsonText::string(mapping_name(image.mapping)));
+    object_.add("space", JsonText::string(color_space_name(image.color_space)));
+  }
+
+  WriteContext& context_;
+  const Light& light_;
+  JsonText object_ = JsonText::object();
+};
+
+}  // namespace
+
+std::string_view mapping_name(ImageMapping mapping) {
+  switch (mapping) {
+    case ImageMapping::latitude_longitude: return "latitude_longitude";
+    case ImageMapping::equal_area: return "equal_area";
+  }
+  return {};
+}
+
+JsonText write_light(WriteContext& context, const Light& light) { return LightWriter(context, light).write(); }
+
+}  // namespace metamer

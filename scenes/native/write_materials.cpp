@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+
+#include "scenes/native/write_parts.h"
+
+namespace metamer {
+namespace {
+
+class MaterialWriter {
+ public:
+  MaterialWriter(WriteContext& context, const Material& material) : context_(context), material_(material) {}
+
+  JsonText write() {
+    switch (material_.kind) {
+      case MaterialKind::diffuse: return diffuse();
+      case MaterialKind::conductor: return conductor();
+      case MaterialKind::dielectric: return dielectric();
+      case MaterialKind::rough: return rough();
+      case MaterialKind::coated: return coated();
+      case MaterialKind::smooth: return smooth();
+      case MaterialKind::layered: return layered();
+      case MaterialKind::diffuse_transmission: return diffuse_transmission();
+      case MaterialKind::mix: return mix();
+      case MaterialKind::hair: context_.mistakes.push_back("a material of kind hair"); break;
+    }
+    return JsonText::object();
+  }
+
+ private:
+  JsonText diffuse() {
+    type("diffuse");
+    reflectance();
+    return object_;
+  }
+
+  JsonText conductor() {
+    type("conductor");
+    spectrum("eta", material_.eta);
+    spectrum("kappa", material_.kappa);
+    roughness();
+    fresnel();
+    return object_;
+  }
+
+  JsonText dielectric() {
+    type("dielectric");
+    spectrum("eta", material_.eta);
+    if (material_.kappa != zero_spectrum) spectrum("kappa", material_.kappa);
+    roughness();
+    inside();
+    fresnel();
+    return object_;
+  }
+
+  JsonText smooth() {
+    type("smooth");
+    spectrum("n", material_.eta);
+    if (material_.kappa != zero_spectrum) spectrum("kappa", material_.kappa);
+    inside();
+    fresnel();
+    return object_;
+  }
+
+  JsonText rough() {
+    type("rough");
+    spectrum("kd", material_.kd);
+    spectrum("ks", material_.ks);
+    object_.add("shininess", JsonText::number(material_.shininess));
+    if (material_.normalized != 0) object_.add("normalized", JsonText::boolean(true));
+    return object_;
+  }
+
+  JsonText coated() {
+    type("coated");
+    reflectance();
+    spectrum("eta", material_.eta);
+    roughness();
+    fresnel();
+    return object_;
+  }
+
+  JsonText layered() {
+    type("layered");
+    reflectance();
+    spectrum("eta", material_.eta);
+    roughness();
+    object_.add("optical_thickness", JsonText::number(material_.layer.thickness));
+    object_.add("max_depth", JsonText::integer(material_.layer.max_depth));
+    return object_;
+  }
+
+  JsonText diffuse_transmission() {
+    type("diffuse_transmission");
+    reflectance();
+    albedo("transmittance", material_.transmittance_texture, material_.transmittance);
+    return object_;
+  }
+
+  JsonText mix() {
+    type("mix");
+    object_.add("first", JsonText::string(context_.material_names[material_.mix.first.index]));
+    object_.add("second", JsonText::string(context_.material_names[material_.mix.second.index]));
+    object_.add("amount", JsonText::number(material_.mix.amount));
+    return object_;
+  }
+
+  void type(std::string_view name) { object_.add("type", JsonText::string(name)); }
+  void spectrum(std::string_view key, SpectrumId id) { object_.add(key, context_.spectra.write(id)); }
+  void albedo(std::string_view key, TextureId texture, SpectrumId id) {
+    object_.add(key, texture != no_index ? context_.texture(texture) : context_.spectra.write_reflectance(id));
+  }
+  void reflectance() { albedo("reflectance", material_.reflectance_texture, material_.reflectance); }
+  void roughness() {
+    if (material_.alpha_x == 0 && material_.alpha_y == 0) return;
+    if (material_.alpha_x == material_.alpha_y)
+      object_.add("roughness", JsonText::number(material_.alpha_x));
+    else
+      object_.add("roughness", JsonText::numbers(std::array{material_.alpha_x, material_.alpha_y}));
+  }
+  void inside() {
+    if (material_.priority != 0) object_.add("priority", JsonText::integer(material_.priority));
+    if (material_.thin != 0) object_.add("thin", JsonText::boolean(true));
+    if (material_.thickness != 0) object_.add("thickness", JsonText::number(material_.thickness));
+  }
+  void fresnel() {
+    switch (material_.fresnel) {
+      case FresnelModel::exact: return;
+      case FresnelModel::schlick: object_.add("fresnel", JsonText::string("schlick"));
+    }
+  }
+
+  WriteContext& context_;
+  const Material& material_;
+  JsonText object_ = JsonText::object();
+};
+
+// An entity that is only there for its material lends it its name; another one keeps its name for itself.
+std::string wanted_name(const Scene& scene, Entity entity, uint32_t row) {
+  const Name name = scene.registry.get<Name>(entity);
+  const std::string own = name.name == no_index ? std::string() : scene.names[name.name];
+  if (own.empty()) return fmt::format("material {}", row + 1);
+  return scene.registry.has<Transform>(entity) || scene.registry.has<Geometry>(entity) ? own + " material" : own;
+}
+
+}  // namespace
+
+JsonText write_materials(WriteContext& context) {
+  const Table<Material>& table = context.scene.registry.table<Material>();
+  // Names first: a mix may be of any others.
+  for (uint32_t row = 0; row < table.size(); ++row) {
+    const Entity entity = table.owner(row);
+    if (entity.index >= context.material_names.size()) context.material_names.resize(entity.index + 1);
+    context.material_names[entity.index] = context.entity_names.take(wanted_name(context.scene, entity, row));
+  }
+  JsonText materials = JsonText::object().break_lines();
+  for (uint32_t row = 0; row < table.size(); ++row)
+    materials.add(context.material_names[table.owner(row).index], MaterialWriter(context, table.get(row)).write());
+  return materials;
+}
+
+}  // namespace metamer

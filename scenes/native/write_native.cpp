@@ -1,0 +1,159 @@
+#include "scenes/native/write_native.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "engine/files/staged_folder.h"
+#include "scenes/file_bytes.h"
+#include "scenes/images/read_image.h"
+#include "scenes/images/write_image.h"
+#include "scenes/meshes/write_ply.h"
+#include "scenes/native/write_parts.h"
+
+namespace metamer {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string side_folder(const std::string& path) {
+  return (fs::path(path).parent_path() / (fs::path(path).stem().string() + "-files")).string();
+}
+
+// A name that every file system takes, made of the last part of what a mesh or an image is called.
+std::string file_stem(const std::string& called, std::string_view fallback) {
+  std::string stem = fs::path(called).filename().string();
+  const std::string ending = file_extension(stem);
+  for (const std::string_view known : {"ply", "obj", "gz", "exr", "png", "jpg", "jpeg", "tga", "hdr", "pfm"})
+    if (ending == known) stem = fs::path(stem).stem().string();
+  constexpr size_t longest = 80;
+  if (stem.size() > longest) stem.resize(longest);
+  for (char& c : stem) {
+    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    if (!is_plain) c = '-';
+  }
+  const bool has_letter = stem.find_first_not_of('-') != std::string::npos;
+  return has_letter ? stem : std::string(fallback);
+}
+
+bool same_pixels(const Image& a, const Image& b) {
+  return a.width == b.width && a.height == b.height && a.rgb == b.rgb;
+}
+
+// Whether the file that the image is called after still holds its pixels if it is decoded so.
+bool is_file(const Image& image, const ImageEncoding& encoding) {
+  Diagnostics ignored;
+  Image read;
+  return fs::is_regular_file(image.name) && read_image(image.name, {}, read, ignored, encoding) &&
+         same_pixels(read, image);
+}
+
+JsonText scene_text(WriteContext& context) {
+  JsonText settings = write_settings(context.scene.settings);
+  JsonText materials = write_materials(context);
+  JsonText entities = write_entities(context);
+  JsonText root = JsonText::object().break_lines();
+  root.add("metamer", JsonText::integer(1)).add("settings", std::move(settings));
+  if (!context.spectra.definitions().empty()) root.add("spectra", context.spectra.definitions());
+  if (!context.texture_definitions.empty()) root.add("textures", context.texture_definitions);
+  if (!materials.empty()) root.add("materials", std::move(materials));
+  if (!context.mesh_definitions.empty()) root.add("meshes", context.mesh_definitions);
+  return root.add("entities", std::move(entities));
+}
+
+FileError write_image_file(const Image& image, const ImageFile& file, StagedFolder& folder) {
+  if (!file.is_copy) {
+    folder.note_written(file.name);
+    return write_image(folder.path_of(file.name), image);
+  }
+  FileBytes bytes;
+  Diagnostics messages;
+  if (!read_file(image.name, {}, bytes, messages)) return format_diagnostics(messages);
+  return folder.write(file.name, bytes.text());
+}
+
+FileError write_side_files(const WriteContext& context, const Cancellation& cancellation, StagedFolder& folder,
+                           NativeFiles& files) {
+  for (const auto& [id, name] : context.meshes) {
+    if (cancellation.requested()) return "interrupted; nothing was written";
+    const std::string bytes = ply_bytes(context.scene.meshes[id]);
+    if (const FileError error = folder.write(name, bytes)) return error;
+    files.bytes += bytes.size();
+  }
+  for (const ImageFile& file : context.images) {
+    if (cancellation.requested()) return "interrupted; nothing was written";
+    if (const FileError error = write_image_file(context.scene.images[file.id], file, folder)) return error;
+    files.bytes += fs::file_size(folder.path_of(file.name));
+  }
+  files.meshes = context.meshes.size();
+  files.images = context.images.size();
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string UniqueNames::take(std::string wanted) {
+  wanted = valid_text(wanted);
+  std::string name = wanted;
+  if (!taken_.insert(name).second) {
+    size_t& number = last_number_.try_emplace(wanted, 1).first->second;
+    do {
+      name = fmt::format("{}{}{}", wanted, separator_, ++number);
+    } while (!taken_.insert(name).second);
+  }
+  return name;
+}
+
+// Meshes that no entity shows are left out; two meshes stay two, even equal ones: those shown twice are instances.
+std::string WriteContext::mesh_name(MeshId id) {
+  const auto known = mesh_names.find(id);
+  if (known != mesh_names.end()) return known->second;
+  const std::string name = file_names.take(file_stem(scene.meshes[id].name, "mesh"));
+  meshes.push_back({id, name + ".ply"});
+  const std::string path = folder + "/" + name + ".ply";
+  mesh_definitions.add(name, JsonText::object().add("file", JsonText::string(path)));
+  return mesh_names[id] = name;
+}
+
+// A copy where that can be, else (generated images, other encodings) the pixels in an EXR.
+const ImageFile& WriteContext::image_file(ImageId id) {
+  for (const ImageFile& known : images)
+    if (known.id == id) return known;
+  const Image& image = scene.images[id];
+  const bool is_srgb = is_file(image, {}), is_linear = !is_srgb && is_file(image, {.gamma = 1});
+  const bool is_copy = is_srgb || is_linear;
+  const std::string ending = is_copy ? file_extension(image.name) : "exr";
+  const std::string name = file_names.take(file_stem(image.name, "image")) + "." + ending;
+  images.push_back({id, name, is_copy, is_linear});
+  return images.back();
+}
+
+FileError check_native_target(const std::string& path) {
+  if (const FileError error = check_target(path)) return error;
+  return check_folder_target(side_folder(path));
+}
+
+FileError write_native(const Scene& scene, const std::string& path, const Cancellation& cancellation,
+                       NativeFiles& files) {
+  files = {};
+  const std::string folder = side_folder(path);
+  WriteContext context(scene, fs::path(folder).filename().string());
+  const std::string text = scene_text(context).text();
+  if (!context.mistakes.empty()) return fmt::format("{}: cannot say: {}", path, fmt::join(context.mistakes, ", "));
+  files.bytes = text.size();
+  StagedFolder staged;
+  const bool has_side_files = !context.meshes.empty() || !context.images.empty();
+  if (has_side_files) {
+    files.folder = folder;
+    if (const FileError error = staged.open(folder)) return error;
+    if (const FileError error = write_side_files(context, cancellation, staged, files)) return error;
+  }
+  AtomicFile file;
+  if (const FileError error = file.open(path)) return error;
+  if (const FileError error = file.write(text.data(), text.size())) return error;
+  if (has_side_files)
+    if (const FileError error = staged.commit()) return error;
+  return file.commit();
+}
+
+}  // namespace metamer

@@ -1,0 +1,32 @@
+// What the readers of single kinds of material share.
+#pragma once
+#include "scenes/pbrt/reader.h"
+
+namespace metamer::pbrt {
+
+// materials.cpp
+
+// GGX widths along u and v of "roughness", "uroughness", "vroughness" with `prefix` before, remapped by a square root
+// unless "remaproughness" is false. Errors: negative ones.
+struct Widths {
+  float alpha_x = 0, alpha_y = 0;
+};
+Widths read_widths(Reader& reader, Parameters& parameters, std::string_view prefix, double fallback);
+// "reflectance", 0.5 by default, or its texture.
+void read_reflectance(Reader& reader, Parameters& parameters, Material& material);
+// Index of refraction, 1.5 by default. Errors: one that is not positive.
+SpectrumId read_index(Reader& reader, Parameters& parameters, std::string_view name);
+// Of a metal: copper by default, or of a reflectance; `prefix` before "eta" and "k".
+struct MetalIndex {
+  SpectrumId eta = unit_spectrum, kappa = zero_spectrum;
+};
+MetalIndex read_metal(Reader& reader, Parameters& parameters, std::string_view prefix);
+
+// layered_materials.cpp: pbrt's coats, with their layer.
+void read_coated_diffuse(Reader& reader, Parameters& parameters, Material& material);
+
+// mixed_materials.cpp
+void read_diffuse_transmission(Reader& reader, Parameters& parameters, Material& material);
+void read_mix(Reader& reader, Parameters& parameters, Material& material);
+
+}  // namespace metamer::pbrt

@@ -1,0 +1,81 @@
+// Layered materials, sheets and mixes in our own format: what is read, and what is said about mistakes.
+#include <gmock/gmock.h>
+
+#include "scenes/native/read_native.h"
+#include "scenes/read_scene.h"
+#include "tests/scenes/support/files.h"
+
+namespace metamer {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+struct MaterialsRead {
+  Scene scene;
+  std::string messages;
+  explicit MaterialsRead(const std::string& materials) {
+    Diagnostics diagnostics;
+    const std::string text = "{\"metamer\": 1, \"materials\": {\n" + materials + "\n}, \"entities\": []}";
+    EXPECT_NE(read_native("scene.json", copy_bytes(text), scene, diagnostics), diagnostics.has_errors());
+    messages = format_diagnostics(diagnostics);
+  }
+  Material at(uint32_t n) const { return scene.registry.table<Material>().get(n); }
+};
+
+TEST(NativeLayeredMaterials, LayersAreRead) {
+  const MaterialsRead read(
+      "\"m\": {\"type\": \"layered\", \"reflectance\": 0.3, \"eta\": 1.6, \"roughness\": [0.1, 0.2], "
+      "\"optical_thickness\": 0.5, \"max_depth\": 7}");
+  EXPECT_EQ(read.messages, "");
+  const Material m = read.at(0);
+  EXPECT_EQ(m.kind, MaterialKind::layered);
+  EXPECT_NEAR(read.scene.spectra.value(m.reflectance, 550), 0.3, 1e-6);
+  EXPECT_NEAR(read.scene.spectra.value(m.eta, 550), 1.6, 1e-6);
+  EXPECT_EQ(m.alpha_x, 0.1f);
+  EXPECT_EQ(m.alpha_y, 0.2f);
+  EXPECT_EQ(m.layer.thickness, 0.5f);
+  EXPECT_EQ(m.layer.max_depth, 7u);
+}
+
+TEST(NativeLayeredMaterials, EveryKeyOfLayersIsChecked) {
+  EXPECT_THAT(MaterialsRead("\"m\": {\"type\": \"layered\", \"eta\": 1.5}").messages,
+              HasSubstr("lacks the required key 'reflectance'"));
+  EXPECT_THAT(MaterialsRead("\"m\": {\"type\": \"layered\", \"reflectance\": 0.5}").messages, HasSubstr("'glass'"));
+  EXPECT_THAT(MaterialsRead("\"m\": {\"type\": \"layered\", \"reflectance\": 2, \"eta\": 1.5, \"roughness\": 2,\n"
+                            "\"optical_thickness\": -1, \"max_depth\": 0.5}")
+                  .messages,
+              AllOf(HasSubstr("'reflectance' is the number 2; expected a number from 0 to 1"),
+                    HasSubstr("'roughness' is the number 2; expected a number from 0 to 1"),
+                    HasSubstr("scene.json:3: error: material 'm': 'optical_thickness' is the number -1"),
+                    HasSubstr("'max_depth' is the number 0.5")));
+}
+
+TEST(NativeLayeredMaterials, SheetsHaveTwoAlbedos) {
+  const MaterialsRead read("\"m\": {\"type\": \"diffuse_transmission\", \"reflectance\": 0.3, \"transmittance\": 0.6}");
+  EXPECT_EQ(read.messages, "");
+  EXPECT_EQ(read.at(0).kind, MaterialKind::diffuse_transmission);
+  EXPECT_NEAR(read.scene.spectra.value(read.at(0).transmittance, 550), 0.6, 1e-6);
+  EXPECT_THAT(MaterialsRead("\"m\": {\"type\": \"diffuse_transmission\", \"reflectance\": 0.3}").messages,
+              HasSubstr("lacks the required key 'transmittance'"));
+}
+
+TEST(NativeLayeredMaterials, MixesNameAnyOtherMaterials) {
+  const MaterialsRead read(
+      "\"a\": {\"type\": \"mix\", \"first\": \"b\", \"second\": \"c\", \"amount\": 0.25},\n"
+      "\"b\": {\"type\": \"mirror\"}, \"c\": {\"type\": \"diffuse\", \"reflectance\": 0.5}");
+  EXPECT_EQ(read.messages, "");
+  const Material m = read.at(0);
+  EXPECT_EQ(m.kind, MaterialKind::mix);
+  EXPECT_EQ(m.mix.amount, 0.25f);
+  EXPECT_EQ(read.scene.registry.get<Material>(m.mix.first).kind, MaterialKind::conductor);
+  EXPECT_EQ(read.scene.registry.get<Material>(m.mix.second).kind, MaterialKind::diffuse);
+  EXPECT_THAT(MaterialsRead("\"copper\": {\"type\": \"mirror\"},\n\"m\": {\"type\": \"mix\", \"first\": \"coper\", "
+                            "\"second\": 3, \"amount\": 2}")
+                  .messages,
+              AllOf(HasSubstr("scene.json:3: error: material 'm': unknown material 'coper' (did you mean 'copper'?)"),
+                    HasSubstr("'second' is the number 3"), HasSubstr("'amount' is the number 2")));
+}
+
+}  // namespace
+}  // namespace metamer
