@@ -132,6 +132,7 @@ TEST(Native, ReadsMediaAndWhereTheyAre) {
   EXPECT_GT(r.scene.spectra.value(smoke.sigma_a, 450), r.scene.spectra.value(smoke.sigma_a, 650));
   EXPECT_NEAR(r.scene.spectra.value(smoke.emission, 550),
               r.scene.spectra.value(r.scene.spectra.add_blackbody(1500).id, 550), 1e-9);
+  EXPECT_EQ(smoke.emission_scale, 3.0f);
   EXPECT_EQ(r.scene.describe(cloud.inside), "'smoke'");
   EXPECT_NE(r.scene.location(cloud.inside).line, 0u);
 }
