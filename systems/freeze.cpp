@@ -18,7 +18,8 @@ std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   const std::vector<glm::dmat4> to_world = build_transforms(scene, diagnostics);
   build_textures(scene, *world, diagnostics);
   const std::vector<MaterialRow> materials = build_materials(scene, *world, diagnostics);
-  build_geometry(scene, to_world, materials, *world, diagnostics);
+  const std::vector<VolumeSides> volumes = build_volumes(scene, *world, diagnostics);
+  build_geometry(scene, to_world, materials, volumes, *world, diagnostics);
   build_lights(scene, to_world, *world, diagnostics);
   build_camera(scene, to_world, *world, diagnostics);
   build_coefficients(*world);

@@ -42,6 +42,10 @@ void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, C
   }
   clock.charge(SystemId::intersect);
   ShadeStream& shade = batch.shade;
+  if (world.has_volumes)
+    counters.lost_rays +=
+        volumes(world, depth, paths, batch.hits, batch.order, shade, batch.slots, &counters.embree_seconds);
+  clock.charge(SystemId::volumes);
   sort_hits(world, depth, paths, batch.hits, batch.order, shade.groups);
   shade.size = shade.groups.back().padded_end();
   count_lanes(shade, paths.size, counters);
@@ -61,7 +65,14 @@ void weigh_lights(const World& world, const ShadeWork& work, Batch& batch, Stage
   batch.shadow.size = 0;
   shade_rough_kinds(world, work, batch.shade, batch.shadow);
   clock.charge(SystemId::shade);
-  shadow(world, batch.shadow, batch.slots, &counters.embree_seconds);
+  if (world.has_volumes) {
+    if (!batch.crossings) batch.crossings = std::make_unique<Batch>();
+    occlude(world, batch.shadow, &counters.embree_seconds);
+    counters.lost_rays += transmit(world, batch.shadow, *batch.crossings, &counters.embree_seconds);
+    add_light(batch.shadow, batch.slots);
+  } else {
+    shadow(world, batch.shadow, batch.slots, &counters.embree_seconds);
+  }
   if (world.settings.shadows) counters.shadow_rays += batch.shadow.size;
   clock.charge(SystemId::shadow);
 }
@@ -151,6 +162,7 @@ void shade_rough_kinds(const World& world, const ShadeWork& work, ShadeStream& s
   shade_rough_coated(world, work, shade, shadow);
   shade_rough_conductor(world, work, shade, shadow);
   shade_rough_dielectric(world, work, shade, shadow);
+  shade_phase(world, work, shade, shadow);
 }
 
 void trace_path(const World& world, Batch& batch, Counters& counters) {
@@ -201,6 +213,7 @@ void Counters::add(const Counters& other) {
   live_lanes += other.live_lanes;
   invalid_samples += other.invalid_samples;
   lost_media += other.lost_media;
+  lost_rays += other.lost_rays;
 }
 
 void trace_tile(const World& world, const TileRect& tile, uint32_t sample_begin, uint32_t sample_end, Batch& batch,

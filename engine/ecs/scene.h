@@ -45,6 +45,14 @@ struct Image {
   ColorSpace color_space = ColorSpace::srgb;
 };
 
+// Values at the centres of nx by ny by nz cells, x fastest.
+struct Grid {
+  uint32_t nx = 1, ny = 1, nz = 1;
+  uint32_t channels = 1;  // or 3: linear RGB
+  ColorSpace color_space = ColorSpace::srgb;
+  std::vector<float> values;  // channels * nx * ny * nz
+};
+
 struct Filter {
   FilterKind kind = FilterKind::gaussian;
   float radius_x = 1.5f, radius_y = 1.5f;  // pixels
@@ -117,6 +125,7 @@ struct Scene {
   std::vector<Curves> curves;
   std::vector<Image> images;
   std::vector<Texture> textures;
+  std::vector<Grid> grids;
   NameTable names;
   RenderSettings settings;
 

@@ -5,8 +5,8 @@ namespace {
 
 constexpr bool required = true;
 
-constexpr KeySpec scene[] = {{"$schema"},  {"metamer", required}, {"units"},  {"settings"}, {"spectra"},
-                             {"textures"}, {"materials"},         {"meshes"}, {"curves"},   {"entities", required}};
+constexpr KeySpec scene[] = {{"$schema"},   {"metamer", required}, {"units"},  {"settings"}, {"spectra"}, {"textures"},
+                             {"materials"}, {"media"},             {"meshes"}, {"curves"},   {"entities", required}};
 constexpr KeySpec settings[] = {{"size"},    {"samples"}, {"max_depth"},    {"seed"},         {"integrator"},
                                 {"shadows"}, {"filter"},  {"exposure"},     {"sensor_scale"}, {"spectral"},
                                 {"color"},   {"crop"},    {"pixel_jitter"}, {"shutter"}};
@@ -57,9 +57,13 @@ constexpr KeySpec material_smooth[] = {{"type", required}, {"metal"},        {"g
                                        {"kappa"},          {"fresnel"},      {"priority"},  {"thin"},
                                        {"thickness"},      {"displacement"}, {"normal_map"}};
 constexpr KeySpec material_mirror[] = {{"type", required}};
+constexpr KeySpec material_interface[] = {{"type", required}};
+constexpr KeySpec medium_homogeneous[] = {{"type", required}, {"sigma_a"},       {"sigma_s"}, {"scale"}, {"g"},
+                                          {"emission"},       {"emission_scale"}};
+constexpr KeySpec entity_media[] = {{"inside"}, {"outside"}};
 constexpr KeySpec mesh[] = {{"file"}, {"positions"}, {"indices"}, {"normals"}, {"uvs"}};
-constexpr KeySpec entity[] = {{"name"},     {"parent"}, {"transform"}, {"motion"},    {"geometry"},
-                              {"material"}, {"light"},  {"camera"},    {"visibility"}};
+constexpr KeySpec entity[] = {{"name"},     {"parent"}, {"transform"}, {"motion"},     {"geometry"},
+                              {"material"}, {"light"},  {"camera"},    {"visibility"}, {"media"}};
 constexpr KeySpec transform[] = {{"matrix"}, {"translate"}, {"rotate"}, {"scale"}, {"look_at"}};
 constexpr KeySpec rotate[] = {{"axis", required}, {"degrees", required}};
 constexpr KeySpec look_at[] = {{"from", required}, {"to", required}, {"up"}};
@@ -132,6 +136,9 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"material.dielectric", material_dielectric},
                                 {"material.smooth", material_smooth},
                                 {"material.mirror", material_mirror},
+                                {"material.interface", material_interface},
+                                {"medium.homogeneous", medium_homogeneous},
+                                {"entity_media", entity_media},
                                 {"mesh", mesh},
                                 {"curves", curves},
                                 {"entity", entity},

@@ -220,6 +220,10 @@ Material read_kind(SceneContext& context, const JsonObject& object) {
     read_rough(context, object, material);
     return material;
   }
+  if (object.type() == "interface") {
+    material.kind = MaterialKind::interface;
+    return material;
+  }
   if (object.type() == "mirror") return mirror(context.scene.spectra);
   using Read = void (*)(SceneContext&, const JsonObject&, Material&);
   constexpr std::pair<std::string_view, Read> others[] = {

@@ -30,6 +30,7 @@ class MaterialWriter {
       case MaterialKind::layered: return layered();
       case MaterialKind::diffuse_transmission: return diffuse_transmission();
       case MaterialKind::mix: return mix();
+      case MaterialKind::interface: type("interface"); return object_;
       case MaterialKind::hair: context_.mistakes.push_back("a material of kind hair"); break;
     }
     return JsonText::object();

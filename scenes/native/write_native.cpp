@@ -51,12 +51,14 @@ bool is_file(const Image& image, const ImageEncoding& encoding) {
 JsonText scene_text(WriteContext& context) {
   JsonText settings = write_settings(context.scene.settings);
   JsonText materials = write_materials(context);
+  JsonText media = write_media(context);
   JsonText entities = write_entities(context);
   JsonText root = JsonText::object().break_lines();
   root.add("metamer", JsonText::integer(1)).add("settings", std::move(settings));
   if (!context.spectra.definitions().empty()) root.add("spectra", context.spectra.definitions());
   if (!context.texture_definitions.empty()) root.add("textures", context.texture_definitions);
   if (!materials.empty()) root.add("materials", std::move(materials));
+  if (!media.empty()) root.add("media", std::move(media));
   if (!context.mesh_definitions.empty()) root.add("meshes", context.mesh_definitions);
   if (!context.curve_definitions.empty()) root.add("curves", context.curve_definitions);
   return root.add("entities", std::move(entities));

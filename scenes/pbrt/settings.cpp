@@ -61,6 +61,8 @@ void add_camera(Reader& reader, const Camera& camera, Source source) {
   reader.coordinate_systems["camera"] = camera_to_world;
   set_place(reader, reader.camera, camera_to_world);
   reader.scene.registry.set(reader.camera, camera);
+  if (!reader.state.media.outside.is_null())
+    reader.scene.registry.set(reader.camera, MediumSlot{{}, reader.state.media.outside});
   reader.scene.registry.set(reader.camera, Name{reader.scene.names.add("camera")});
   reader.scene.registry.set(reader.camera, source);
 }

@@ -99,8 +99,8 @@ Sampler "zsobol" "string randomization" "none"
 Integrator "bdpt" "integer maxdepth" 3
 Accelerator "bvh" "string splitmethod" "sah"
 Option "wave-Front" true
-MakeNamedMedium "fog" "string type" "homogeneous"
-MediumInterface "fog" ""
+
+
 ColorSpace "rec2020"
 Film "rgb" "float maxcomponentvalue" 10 "string sensor" "canon_eos_5d" "string filename" "x.exr" "float diagonal" 20)");
   EXPECT_TRUE(read.ok);
@@ -117,7 +117,6 @@ Film "rgb" "float maxcomponentvalue" 10 "string sensor" "canon_eos_5d" "string f
           "scene:5: note: Integrator \"bdpt\" is not supported; path tracing looks for the same light",
           "scene:6: note: Accelerator \"bvh\": Embree's is always used",
           "scene:7: note: Option \"wave-Front\" is not supported; there is one renderer",
-          "scene:8: warning: media are not supported yet; space is empty",
           "scene:11: warning: Film \"rgb\": 'sensor' is not supported yet; cie1931 is used",
           "scene:11: note: Film's 'filename' is not used: outputs are named after the scene, or by -o",
           "scene:11: warning: Film \"rgb\": 'maxcomponentvalue' is not supported yet; samples are not clamped",
