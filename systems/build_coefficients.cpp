@@ -66,6 +66,7 @@ void build_coefficients(World& world) {
   index.give(world.media.eta);
   index.give(world.media.kappa);
   for (LightRow& row : world.lights) light.give(row.spectrum);
+  light.give(world.ambient_light);
 }
 
 }  // namespace metamer

@@ -105,6 +105,10 @@ void shade_coat_mirror(const World& world, ShadeStream& shade);
 void shade_dielectric(const World& world, uint32_t depth, Branch branch, ShadeStream& shade);
 void shade_thin_dielectric(const World& world, uint32_t depth, Branch branch, ShadeStream& shade);
 
+// For ambient_occlusion: of every first surface a direction over it, by the cosine, to be tested for what is in the
+// way.
+void ambient_occlusion(const World& world, const ShadeStream& shade, ShadowStream& shadow);
+
 // Adds the contributions whose light is in sight; all of them where the scene casts no shadows.
 void shadow(const World& world, const ShadowStream& shadow, Slots& slots, double* embree_seconds);
 

@@ -200,8 +200,9 @@ struct World {
   Column<uint32_t> summed_lights;  // rows of abstract lights that are summed one by one (local, recursive), not sampled
   Environment environment;
   TextureSet textures;
-  CameraRow camera;               // as the shutter opens
-  Column<CameraKey> camera_keys;  // empty: the camera stands still
+  SpectrumId ambient_light = zero_spectrum;  // radiance of what ambient_occlusion sees
+  CameraRow camera;                          // as the shutter opens
+  Column<CameraKey> camera_keys;             // empty: the camera stands still
   SpectrumSet spectra;
   RenderSettings settings;
   PixelFilter filter;
