@@ -69,6 +69,7 @@ void build_coefficients(World& world) {
   factor.give(world.volumes.sigma_s);
   light.give(world.volumes.emission);
   for (LightRow& row : world.lights) light.give(row.spectrum);
+  light.give(world.ambient_light);
 }
 
 }  // namespace metamer

@@ -72,7 +72,7 @@ HWY_INLINE Ray spherical_ray(const CameraRow& camera, const CameraVectors& c, VF
     d = latitude_longitude_direction(u, v, &solid_angle);
   }
   // The images' z axis points up.
-  return {c.origin, normalize(mul_add(c.right, d.x, mul_add(c.down, d.z, c.axis * d.y)))};
+  return {c.origin, normalize(mul_add(c.right, d.x, mul_add(c.axis, d.z, c.down * d.y)))};
 }
 
 // The ray through film coordinate (x, y), y down; lens_u, lens_v in [0, 1) choose the point of the lens.

@@ -30,8 +30,8 @@ void count_lanes(const ShadeStream& shade, uint32_t paths, Counters& counters) {
   counters.live_lanes += paths;
 }
 
-// What the rays of the batch meet, and the light they ran into.
-void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, Counters& counters) {
+// What the rays of the batch meet.
+void find_surfaces(const World& world, uint32_t depth, Batch& batch, StageClock& clock, Counters& counters) {
   PathStream& paths = batch.paths;
   if (depth == 0) {
     intersect_camera(world, paths, batch.hits, &counters.embree_seconds);
@@ -54,6 +54,12 @@ void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, C
   bump(world, shade);
   textures(world, depth, shade);
   clock.charge(SystemId::surface);
+}
+
+// And the light they ran into.
+void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, Counters& counters) {
+  find_surfaces(world, depth, batch, clock, counters);
+  ShadeStream& shade = batch.shade;
   if (world.has_interiors) media(world, shade);
   clock.charge(SystemId::media);
   emission(world, shade, batch.slots);
@@ -179,6 +185,17 @@ void trace_local(const World& world, Batch& batch, Counters& counters) {
   if (world.settings.max_depth > 0) gather_direct_light(world, 0, batch, clock, counters);
 }
 
+void trace_ambient_occlusion(const World& world, Batch& batch, Counters& counters) {
+  StageClock clock(counters);
+  find_surfaces(world, 0, batch, clock, counters);
+  batch.shadow.size = 0;
+  ambient_occlusion(world, batch.shade, batch.shadow);
+  clock.charge(SystemId::shade);
+  shadow(world, batch.shadow, batch.slots, &counters.embree_seconds);
+  counters.shadow_rays += batch.shadow.size;
+  clock.charge(SystemId::shadow);
+}
+
 void trace_recursive(const World& world, uint32_t depth, Batch& batch, Counters& counters) {
   StageClock clock(counters);
   meet(world, depth, batch, clock, counters);
@@ -192,6 +209,7 @@ void trace_rays(const World& world, uint32_t depth, Batch& batch, Counters& coun
     case Integrator::local: trace_local(world, batch, counters); break;
     case Integrator::recursive: trace_recursive(world, depth, batch, counters); break;
     case Integrator::path: trace_path(world, batch, counters); break;
+    case Integrator::ambient_occlusion: trace_ambient_occlusion(world, batch, counters); break;
   }
   counters.lost_media += std::exchange(batch.shade.lost_media, 0);
 }

@@ -140,6 +140,10 @@ void shade_coat_mirror(const World& world, ShadeStream& shade);
 void shade_dielectric(const World& world, uint32_t depth, Branch branch, ShadeStream& shade);
 void shade_thin_dielectric(const World& world, uint32_t depth, Branch branch, ShadeStream& shade);
 
+// For ambient_occlusion: of every first surface a direction over it, by the cosine, to be tested for what is in the
+// way.
+void ambient_occlusion(const World& world, const ShadeStream& shade, ShadowStream& shadow);
+
 // Shadow rays end short of the light by as much as float leaves uncertain about where it is.
 inline constexpr float shadow_ray_share = 0.9999f;
 

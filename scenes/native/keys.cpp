@@ -9,7 +9,7 @@ constexpr KeySpec scene[] = {{"$schema"},   {"metamer", required}, {"units"},  {
                              {"materials"}, {"media"},             {"meshes"}, {"curves"},   {"entities", required}};
 constexpr KeySpec settings[] = {{"size"},    {"samples"}, {"max_depth"},    {"seed"},         {"integrator"},
                                 {"shadows"}, {"filter"},  {"exposure"},     {"sensor_scale"}, {"spectral"},
-                                {"color"},   {"crop"},    {"pixel_jitter"}, {"shutter"}};
+                                {"color"},   {"crop"},    {"pixel_jitter"}, {"shutter"},      {"occlusion_distance"}};
 constexpr KeySpec filter_box[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_triangle[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_gaussian[] = {{"type", required}, {"radius"}, {"sigma"}};

@@ -153,9 +153,16 @@ constexpr KnownIntegrator known_integrators[] = {{"path", Instead::nothing},
                                                  {"sppm", Instead::same_light},
                                                  {"lightpath", Instead::same_light},
                                                  {"randomwalk", Instead::same_light},
-                                                 {"ambientocclusion", Instead::path},
-                                                 {"ao", Instead::path},
+                                                 {"ambientocclusion", Instead::nothing},
+                                                 {"ao", Instead::nothing},
                                                  {"function", Instead::path}};
+
+void read_ambient_occlusion(Parameters& parameters, RenderSettings& settings) {
+  settings.integrator = Integrator::ambient_occlusion;
+  parameters.boolean("cossample", true);  // noise only
+  if (parameters.has("maxdistance"))
+    settings.occlusion_distance = static_cast<float>(parameters.positive("maxdistance", 1));
+}
 
 }  // namespace
 
@@ -169,7 +176,10 @@ void read_integrator(Reader& reader, std::string_view kind, Parameters& paramete
                           fmt::format("there is no Integrator \"{}\"{}", kind, did_you_mean(kind, all)));
     return parameters.ignore_the_rest();
   }
-  reader.scene.settings.max_depth = static_cast<uint32_t>(parameters.integer("maxdepth", 5, 0));
+  RenderSettings& settings = reader.scene.settings;
+  settings.integrator = Integrator::path;
+  if (kind == "ambientocclusion" || kind == "ao") return read_ambient_occlusion(parameters, settings);
+  settings.max_depth = static_cast<uint32_t>(parameters.integer("maxdepth", 5, 0));
   if (known->instead == Instead::nothing) {
     parameters.string("lightsampler", "bvh");  // how lights are chosen changes noise only
     parameters.boolean("samplelights", true);

@@ -79,6 +79,15 @@ TEST(PbrtSettings, FilmSamplerIntegratorAndSeed) {
   EXPECT_EQ(settings("Sampler \"halton\" \"integer seed\" 3").seed, 3u);
 }
 
+TEST(PbrtSettings, AmbientOcclusionIsAnIntegratorOfOurs) {
+  EXPECT_EQ(settings("").integrator, Integrator::path);
+  const RenderSettings s =
+      settings("Integrator \"ambientocclusion\" \"float maxdistance\" 2.5 \"bool cossample\" false");
+  EXPECT_EQ(s.integrator, Integrator::ambient_occlusion);
+  EXPECT_EQ(s.occlusion_distance, 2.5f);
+  EXPECT_TRUE(std::isinf(settings("Integrator \"ao\"").occlusion_distance));
+}
+
 TEST(PbrtSettings, FiltersHaveTheirOwnDefaults) {
   EXPECT_EQ(settings("PixelFilter \"box\"").filter.radius_x, 0.5f);
   const Filter triangle = settings("PixelFilter \"triangle\" \"float yradius\" 3").filter;
@@ -163,7 +172,7 @@ TEST(PbrtSettings, StrictAllowsWhatDoesNotChangeThePicture) {
                                "Option \"rendercoordsys\" \"world\"", "Option \"pixelstats\" true",
                                "Option \"msereferenceimage\" \"a.exr\"", "Option \"wavefront\" true"})
     EXPECT_EQ(strict_errors(harmless), 0u) << harmless;
-  for (const char* harmful : {"Integrator \"sppm\"", "Integrator \"ambientocclusion\"", "PixelFilter \"sinc\"",
+  for (const char* harmful : {"Integrator \"sppm\"", "Integrator \"function\"", "PixelFilter \"sinc\"",
                               "Film \"gbuffer\"", "Film \"spectral\"", "Film \"rgb\" \"float maxcomponentvalue\" 2",
                               "Film \"rgb\" \"string sensor\" \"nikon_d850\"", "Option \"forcediffuse\" true",
                               "Film \"rgb\" \"float whitebalance\" 5000", "ColorSpace \"rec2020\" Film \"rgb\""})
