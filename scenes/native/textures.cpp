@@ -184,34 +184,37 @@ class TextureReader {
   }
 
   // 0: sRGB, else the exponent.
-  ImageEncoding encoding() {
-    ImageEncoding encoding;
+  double gamma() {
+    double gamma = 0;
     const Json::Value* value = object_.find("encoding");
-    if (value == nullptr) return encoding;
+    if (value == nullptr) return gamma;
     if (value->isNumeric() && !value->isBool()) {
-      encoding.gamma = reader_.number(*value, "encoding", positive, 1);
+      gamma = reader_.number(*value, "encoding", positive, 1);
     } else if (value->isString() && value->asString() == "linear") {
-      encoding.gamma = 1;
+      gamma = 1;
     } else if (!value->isString() || value->asString() != "srgb") {
       reader_.expected(*value, "encoding", "'srgb', 'linear' or the exponent of a power");
     }
-    return encoding;
+    return gamma;
   }
 
   // Decoded once for each encoding and colour space.
   std::optional<ImageId> shared_image() {
-    const ImageEncoding decoded = encoding();
-    const auto space = static_cast<ColorSpace>(object_.choice("space", color_space_names(), 0));
+    const double exponent = gamma();
+    std::optional<ColorSpace> space;  // the file's own where it is not given
+    if (object_.has("space")) space = static_cast<ColorSpace>(object_.choice("space", color_space_names(), 0));
     if (!object_.has("image")) return std::nullopt;  // reported
     const Json::Value& value = *object_.find("image");
     const std::string file = reader_.text(value, "image");
     if (file.empty()) return std::nullopt;
     const std::string path = resolve_path(file, reader_.document().path());
-    const auto [known, is_new] = context_.images.try_emplace({path, decoded.gamma, space}, std::nullopt);
+    const auto [known, is_new] = context_.images.try_emplace({path, exponent, space}, std::nullopt);
     if (!is_new) return known->second;
+    ImageEncoding decoded = texture_encoding(path);
+    decoded.gamma = exponent;
     Image image;
     if (!read_image(path, reader_.document().at(value), image, reader_.diagnostics(), decoded)) return std::nullopt;
-    image.color_space = space;
+    image.color_space = space.value_or(image.color_space);
     context_.scene.images.push_back(std::move(image));
     return known->second = static_cast<ImageId>(context_.scene.images.size() - 1);
   }

@@ -14,6 +14,15 @@ class LightWriter {
       case LightKind::spot: spot(); break;
       case LightKind::directional: directional(); break;
       case LightKind::environment: environment(); break;
+      case LightKind::goniometric:
+        brightness("goniometric", "intensity");
+        image(true);
+        break;
+      case LightKind::projection:
+        brightness("projection", "intensity");
+        object_.add("fov", JsonText::number(light_.fov_deg));
+        image(false);
+        break;
     }
     return object_;
   }
@@ -29,6 +38,7 @@ class LightWriter {
     brightness("area", light_.is_power != 0 ? "power" : "radiance");
     if (light_.two_sided != 0) object_.add("two_sided", JsonText::boolean(true));
     if (light_.cosine_power != 0) object_.add("cosine_power", JsonText::number(light_.cosine_power));
+    image(false);
   }
 
   void spot() {
@@ -45,10 +55,21 @@ class LightWriter {
 
   void environment() {
     brightness("environment", "radiance");
+    image(true);
+    if (light_.has_portal == 0) return;
+    // Corners that give the same edges as differences, in the order of the reader (systems/portal.h).
+    const glm::dvec3 corner(light_.portal_corner), x(light_.portal_x), y(light_.portal_y);
+    JsonText corners = JsonText::array();
+    for (const glm::dvec3& p : {corner, corner + y, corner + y + x, corner + x})
+      corners.add(JsonText::numbers(std::array{p.x, p.y, p.z}));
+    object_.add("portal", std::move(corners));
+  }
+
+  void image(bool is_sphere) {
     if (light_.image == no_index) return;
     const Image& image = context_.scene.images[light_.image];
-    object_.add("image", JsonText::string(context_.folder + "/" + context_.image_file(light_.image).name));
-    object_.add("mapping", JsonText::string(mapping_name(image.mapping)));
+    object_.add("image", JsonText::string(context_.folder + "/" + context_.light_image_file(light_.image).name));
+    if (is_sphere) object_.add("mapping", JsonText::string(mapping_name(image.mapping)));
     object_.add("space", JsonText::string(color_space_name(image.color_space)));
   }
 
