@@ -39,15 +39,12 @@ TEST(NativeWriter, KnowsEveryFieldThatASceneHas) {
   EXPECT_EQ(field_count<Source>, 2u);      // a new file has lines of its own
   EXPECT_EQ(sizeof(RenderSettings), 112u);
   EXPECT_EQ(sizeof(Filter), 16u);
-  const auto [name, width, height, rgb, alpha, mapping, color_space] = Image{};
-  const auto [mesh_name, positions, normals, uvs, indices] = Mesh{};
-  const auto [registry, spectra, meshes, images, textures, scene_names, settings] = Scene{};
-  const auto [kind, spectrum, value, is_number, image, channel, wrap, nearest, invert, scale, texture_mapping, axis,
-              direction, octaves, roughness, variation, a, b, amount] = Texture{};
-  const auto [mapping_kind, u_scale, v_scale, u_offset, v_offset, to_texture, u_axis, v_axis] = TextureMapping{};
-  const auto [base, base_eta, base_kappa, alpha_x, alpha_y, thickness, albedo, asymmetry, max_depth, walks] = Layer{};
-  const auto [sigma_a, beta_m, beta_n, tilt_deg] = Hair{};
-  const auto [first, second, part, part_texture] = Mix{};
+  EXPECT_EQ(sizeof(Image), 96u);
+  EXPECT_EQ(sizeof(Texture), 172u);
+  EXPECT_EQ(sizeof(TextureMapping), 92u);
+  EXPECT_EQ(sizeof(Layer), 40u);
+  EXPECT_EQ(sizeof(Mix), 24u);
+  EXPECT_EQ(sizeof(Hair), 16u);
 }
 
 double through_double(float value) { return std::strtod(number_text(value).c_str(), nullptr); }
@@ -64,7 +61,7 @@ TEST(NativeWriter, NumbersReadBackThroughDoubles) {
   for (int i = 0; i < 200000; ++i) {
     bits = bits * 1664525 + 1013904223;
     const float value = std::bit_cast<float>(bits);
-    if (std::isfinite(value)) ASSERT_EQ(static_cast<float>(through_double(value)), value) << bits;
+    ASSERT_TRUE(!std::isfinite(value) || static_cast<float>(through_double(value)) == value) << bits;
   }
 }
 
