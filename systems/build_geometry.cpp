@@ -253,6 +253,17 @@ void mask_object(Builder& b, TextureId texture) {
   b.world.has_masks = true;
 }
 
+// How the lights of the last object are found.
+void add_light_finding(World& world) {
+  ObjectColumns& objects = world.objects;
+  const bool is_seen = (objects.visibility.back() & visible_to_bounces) != 0;
+  const LightFinding finding = objects.alpha.back() != no_index ? LightFinding::rays
+                               : is_seen                        ? LightFinding::both
+                                                                : LightFinding::samples;
+  while (world.light_finding.size() < world.lights.size())
+    world.light_finding.push_back(static_cast<uint32_t>(finding));
+}
+
 }  // namespace
 
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
@@ -301,6 +312,7 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
       add_mesh_object(b, entity, geometry, rectangle_mesh(geometry), place);
     else
       add_quadric_object(b, entity, geometry, place.to_world);
+    add_light_finding(world);
   });
   // Embree reads 16 bytes for the last vertex.
   for (int i = 0; i < 4; ++i) world.positions.push_back(0);

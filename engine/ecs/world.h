@@ -145,6 +145,9 @@ struct LightRow {
   float cosine_power = 0;  // shapes with an area: radiance goes with cos^cosine_power
 };
 static_assert(sizeof(LightRow) == 32 * sizeof(float));
+// Who finds a light: light samples and rays that run into it; samples alone (no bounced ray sees it); or rays alone
+// (whether it is there differs from point to point).
+enum class LightFinding : uint32_t { both, samples, rays };
 
 // An image that is a factor on a light's spectrum: RGB fitted to spectra. nearest: the texel, as pbrt-v4 reads images
 // of equal areas. linear: between the texels' centres, clamped at the image's edges, or around the circle in u.
@@ -234,6 +237,7 @@ struct World {
   Column<LightRow> lights;
   Column<uint32_t> image_of_light;  // its row of images, or no_index
   LightImages light_images;
+  Column<uint32_t> light_finding;       // LightFinding by row of lights
   std::vector<uint32_t> distant_disks;  // the rows of lights of that shape: rays that leave the scene run into them
   Distribution1D light_choice;          // over the rows of lights that are sampled; empty where there is none
   Column<uint32_t> summed_lights;  // rows of abstract lights that are summed one by one (local, recursive), not sampled

@@ -51,6 +51,7 @@ JsonText write_geometry(WriteContext& context, const Geometry& geometry) {
       break;
   }
   if (geometry.flip_normal != 0) object.add("flip_normal", JsonText::boolean(true));
+  if (geometry.alpha_texture != no_index) object.add("alpha", context.texture(geometry.alpha_texture));
   return object;
 }
 

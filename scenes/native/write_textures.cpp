@@ -15,6 +15,17 @@ std::string_view wrap_name(TextureWrap wrap) {
   return {};
 }
 
+std::string_view channel_name(TextureChannel channel) {
+  switch (channel) {
+    case TextureChannel::average: return "average";
+    case TextureChannel::red: return "red";
+    case TextureChannel::green: return "green";
+    case TextureChannel::blue: return "blue";
+    case TextureChannel::alpha: return "alpha";
+  }
+  return {};
+}
+
 JsonText write_mapping(const TextureMapping& mapping) {
   using Kind = TextureMapping::Kind;
   JsonText object = JsonText::object();
@@ -86,6 +97,10 @@ class TextureWriter {
         operand("b", texture_.b);
         mapping();
         break;
+      case TextureKind::square_root:
+        type("square_root");
+        operand("a", texture_.a);
+        return object_;
       case TextureKind::coordinate: {
         constexpr std::string_view axes[] = {"u", "v", "w"};
         type("coordinate");
@@ -102,7 +117,6 @@ class TextureWriter {
       case TextureKind::wrinkled: return pattern("wrinkled");
       case TextureKind::windy: return pattern("windy");
       case TextureKind::marble: return pattern("marble");
-      case TextureKind::square_root: context_.mistakes.push_back("a texture that is a square root"); break;
     }
     if (texture_.is_number != 0) object_.add("number", JsonText::boolean(true));
     return object_;
@@ -132,6 +146,8 @@ class TextureWriter {
     if (texture_.nearest != 0) object_.add("filter", JsonText::string("nearest"));
     if (texture_.scale != 1) object_.add("scale", JsonText::number(texture_.scale));
     if (texture_.invert != 0) object_.add("invert", JsonText::boolean(true));
+    if (texture_.channel != TextureChannel::average)
+      object_.add("channel", JsonText::string(channel_name(texture_.channel)));
     mapping();
   }
 

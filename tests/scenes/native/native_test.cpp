@@ -77,7 +77,7 @@ TEST(Native, ReadsEveryKey) {
   EXPECT_EQ(s.color, ColorMode::spectral);
   EXPECT_EQ(r.scene.meshes.size(), 2u);
   EXPECT_EQ(r.scene.registry.table<Light>().size(), 16u);
-  EXPECT_EQ(r.scene.registry.table<Material>().size(), 18u);
+  EXPECT_EQ(r.scene.registry.table<Material>().size(), 19u);
 
   const auto camera = r.get<Camera>("eye");
   EXPECT_EQ(camera.fov_deg, 40);
