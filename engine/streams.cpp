@@ -38,7 +38,7 @@ void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
   take_all(arena, rows, s.next_media);
 }
 
-constexpr size_t columns_in_all = 2 * 22 + 4 + (11 * 3 + 6 * 4 + 4 + 9 + 5 + 4) + (6 + 1 + 4 + 2) + (12 + 2) + 1;
+constexpr size_t columns_in_all = 2 * 22 + 5 + (11 * 3 + 6 * 4 + 4 + 9 + 5 + 4) + (6 + 1 + 4 + 2) + (12 + 2) + 1;
 constexpr size_t column_bytes = (sorted_capacity + column_lanes) * sizeof(float) + 2 * column_alignment;
 
 }  // namespace
@@ -48,7 +48,8 @@ Batch::Batch() : arena(columns_in_all * column_bytes) {
   const size_t rows = sorted_capacity + column_lanes;
   take_paths(arena, rows, paths);
   take_paths(arena, rows, next);
-  hits = {arena.take<uint32_t>(rows), arena.take<uint32_t>(rows), arena.take<float>(rows), arena.take<uint32_t>(rows)};
+  hits = {arena.take<uint32_t>(rows), arena.take<uint32_t>(rows), arena.take<float>(rows), arena.take<float>(rows),
+          arena.take<uint32_t>(rows)};
   take_shade(arena, rows, shade);
   take_all(arena, rows, shadow.origin);
   take_all(arena, rows, shadow.direction);

@@ -2,7 +2,7 @@
 // columns together stay within a core's L2 cache. Nothing here outlives a batch, except the slots, which live
 // until the batch is accumulated.
 //
-// Per path: PathStream 92 bytes, twice (this bounce's and the next one's rays); HitStream 16; ShadeStream 316;
+// Per path: PathStream 92 bytes, twice (this bounce's and the next one's rays); HitStream 20; ShadeStream 316;
 // ShadowStream 52; Slots 56.
 #pragma once
 #include <array>
@@ -110,8 +110,9 @@ void copy_columns(PathStream& from, uint32_t first, uint32_t count, PathStream& 
 // Writer: intersect.
 struct HitStream {
   uint32_t* object;     // row of World::objects; no_index: the ray left the scene
-  uint32_t* primitive;  // triangle within the object
+  uint32_t* primitive;  // triangle or segment within the object
   float* distance;      // metres; exact for quadrics, Embree's (to be computed again) for triangles
+  float* u;             // along a curve's segment, 0 to 1; only of curves
   uint32_t* material;   // row in the table of the kind. Writer: sort
 };
 
@@ -124,7 +125,7 @@ struct ShadeStream {
   Columns<float, 3> position;                 // metres; of a ray that left a world with portals, where it came from
   Columns<float, 3> normal;                   // geometric, unit, on the side the shape calls its outside
   Columns<float, 3> shading_normal, tangent;  // unit; tangent only where the world asks for it
-  Columns<float, 2> uv;                       // only where the world has textures
+  Columns<float, 2> uv;                       // only where World::needs_uvs
   Columns<float, 3> dp_du, dp_dv;             // of the position, as shading sees it; only where the world has bumps
   Columns<float, 3> dn_du, dn_dv;             // of the shading normal; the same
   float* distance;                            // metres from the previous vertex

@@ -37,6 +37,8 @@ void filter_masked(const RTCFilterFunctionNArguments* args) {
     RayHit hit;
     hit.object = object_of(RTCHitN_geomID(args->hit, args->N, lane), RTCHitN_instID(args->hit, args->N, lane, 0));
     hit.primitive = RTCHitN_primID(args->hit, args->N, lane);
+    hit.distance = RTCRayN_tfar(args->ray, args->N, lane);
+    hit.u = RTCHitN_u(args->hit, args->N, lane);
     if (!is_there(world, rays, RTCRayN_id(args->ray, args->N, lane), hit, 0)) args->valid[lane] = 0;
   }
 }

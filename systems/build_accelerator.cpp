@@ -9,6 +9,7 @@
 #include "engine/schedule/workers.h"
 #include "engine/simd/instruction_set.h"
 #include "systems/accelerator.h"
+#include "systems/build_curves.h"
 #include "systems/freeze.h"
 
 namespace metamer {
@@ -21,6 +22,11 @@ void destroy(Accelerator* accelerator) {
   if (accelerator->device != nullptr) rtcReleaseDevice(accelerator->device);
   delete accelerator;
 }
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr float half_turn = 3.14159265f;  // radians
+
+ShapeKind kind_of(const World& world, uint32_t object) { return static_cast<ShapeKind>(world.objects.kind[object]); }
 
 struct ObjectRay {
   double origin[3], direction[3];
@@ -54,13 +60,25 @@ ObjectRay to_object_space(const Number (&to_object)[12], const float (&origin)[3
   return ray;
 }
 
-// Distances along the ray at which it meets the quadric, nearest first; unused ones are infinite. The quadratic's
-// discriminant comes from the distance between the ray and the centre, which does not cancel for far-away spheres
-// (Haines, Guenther, Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019).
-void sphere_distances(const Placement& placement, const ObjectRay& ray, double (&t)[2]) {
+// Whether the angle of (x, y) is at most phi_max.
+bool is_in_sector(const Placement& placement, double x, double y) {
+  // Above 0: counter-clockwise of the last ray, by less than half a turn.
+  const double beyond = placement.cos_phi_max * y - placement.sin_phi_max * x;
+  return placement.phi_max <= half_turn ? y >= 0 && beyond <= 0 : y >= 0 || beyond <= 0;
+}
+
+// Distances along the ray at which it meets a sphere (3 dimensions) or cylinder (2), nearest first, where they are of
+// the part that there is; others are infinite. The quadratic's discriminant comes from the distance between the ray and
+// the centre, which does not cancel for far-away spheres (Haines, Guenther, Akenine-Moeller, "Precision Improvements
+// for Ray/Sphere Intersection", Ray Tracing Gems, 2019).
+template <int dimensions>
+void round_distances(const Placement& placement, const ObjectRay& ray, double (&t)[2]) {
   const double radius = placement.radius;
-  const auto dot = [](const double(&a)[3], const double(&b)[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  const auto dot = [](const double(&a)[3], const double(&b)[3]) {
+    return a[0] * b[0] + a[1] * b[1] + (dimensions == 3 ? a[2] * b[2] : 0.0);
+  };
   const double a = dot(ray.direction, ray.direction), b = -dot(ray.origin, ray.direction);
+  if (a == 0) return;  // along a cylinder's axis
   double nearest[3];
   for (int i = 0; i < 3; ++i) nearest[i] = ray.origin[i] + b / a * ray.direction[i];
   const double discriminant = radius * radius - dot(nearest, nearest);
@@ -70,15 +88,20 @@ void sphere_distances(const Placement& placement, const ObjectRay& ray, double (
   const double first = q != 0 ? c / q : 0, second = q / a;
   t[0] = std::min(first, second);
   t[1] = std::max(first, second);
+  for (double& distance : t) {
+    const double x = ray.origin[0] + distance * ray.direction[0], y = ray.origin[1] + distance * ray.direction[1];
+    const double z = ray.origin[2] + distance * ray.direction[2];
+    if (z < placement.z_min || z > placement.z_max || !is_in_sector(placement, x, y)) distance = infinity;
+  }
 }
 
 void disk_distances(const Placement& placement, const ObjectRay& ray, double (&t)[2]) {
   if (ray.direction[2] == 0) return;
-  const double distance = (double{placement.height} - ray.origin[2]) / ray.direction[2];
+  const double distance = (double{placement.z_min} - ray.origin[2]) / ray.direction[2];
   const double x = ray.origin[0] + distance * ray.direction[0], y = ray.origin[1] + distance * ray.direction[1];
   const double r2 = x * x + y * y;
   if (r2 <= double{placement.radius} * placement.radius &&
-      r2 >= double{placement.inner_radius} * placement.inner_radius)
+      r2 >= double{placement.inner_radius} * placement.inner_radius && is_in_sector(placement, x, y))
     t[0] = distance;
 }
 
@@ -87,11 +110,12 @@ template <class IsThere>
 float quadric_distance(const World& world, uint32_t object, const ObjectRay& ray, float near, float far,
                        const IsThere& counts) {
   const Placement& placement = world.placements[world.objects.placement[object]];
-  double t[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  if (world.objects.kind[object] == static_cast<uint32_t>(ShapeKind::sphere))
-    sphere_distances(placement, ray, t);
-  else
-    disk_distances(placement, ray, t);
+  double t[2] = {infinity, infinity};
+  switch (kind_of(world, object)) {
+    case ShapeKind::sphere: round_distances<3>(placement, ray, t); break;
+    case ShapeKind::cylinder: round_distances<2>(placement, ray, t); break;
+    default: disk_distances(placement, ray, t);
+  }
   for (uint32_t nth = 0; nth < 2; ++nth) {
     const auto distance = static_cast<float>(t[nth]);
     if (t[nth] > near && t[nth] < far && counts(distance, nth)) return distance;
@@ -145,12 +169,15 @@ void occluded_quadric(const RTCOccludedFunctionNArguments* args) {
   }
 }
 
-// The box of an affinely placed sphere or disk: along each axis the support of the image of the unit ball or disk.
+// The box of an affinely placed quadric: along each axis the support of the image of the whole ball, or of the disk and
+// of the distance that it covers as a cylinder.
 void quadric_bounds(const RTCBoundsFunctionArguments* args) {
   const auto& [world_pointer, object] = *static_cast<const Accelerator::Quadric*>(args->geometryUserPtr);
   const World& world = *world_pointer;
   const Placement& placement = world.placements[world.objects.placement[object]];
-  const bool is_sphere = world.objects.kind[object] == static_cast<uint32_t>(ShapeKind::sphere);
+  const bool is_sphere = kind_of(world, object) == ShapeKind::sphere;
+  const double middle = is_sphere ? 0 : (double{placement.z_min} + placement.z_max) / 2;
+  const double half_height = is_sphere ? 0 : (double{placement.z_max} - placement.z_min) / 2;
   // Of a moving one at the time of a key: a box of matrices in between lies within the boxes' interpolation.
   const bool moves = world.objects.key_count[object] > 0;
   const float* to_world =
@@ -159,8 +186,9 @@ void quadric_bounds(const RTCBoundsFunctionArguments* args) {
   for (int i = 0; i < 3; ++i) {
     const float* row = to_world + 4 * i;
     const double z = is_sphere ? double{row[2]} * row[2] : 0.0;
-    const double extent = double{placement.radius} * std::sqrt(double{row[0]} * row[0] + double{row[1]} * row[1] + z);
-    const double centre = row[3] + (is_sphere ? 0.0 : double{row[2]} * placement.height);
+    const double extent = double{placement.radius} * std::sqrt(double{row[0]} * row[0] + double{row[1]} * row[1] + z) +
+                          std::abs(double{row[2]}) * half_height;
+    const double centre = row[3] + double{row[2]} * middle;
     const double slack = 1e-6 * (extent + std::abs(centre));
     lower[i] = static_cast<float>(centre - extent - slack);
     upper[i] = static_cast<float>(centre + extent + slack);
@@ -173,6 +201,13 @@ void check(RTCDevice device) {
     throw std::runtime_error(fmt::format("Embree failed with error {}", static_cast<int>(error)));
 }
 
+void set_masks(const World& world, RTCGeometry geometry) {
+  if (!world.has_masks) return;
+  rtcSetGeometryUserData(geometry, const_cast<World*>(&world));
+  rtcSetGeometryIntersectFilterFunction(geometry, filter_masked);
+  rtcSetGeometryOccludedFilterFunction(geometry, filter_masked);
+}
+
 RTCGeometry triangle_geometry(const World& world, RTCDevice device, uint32_t object) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   const size_t vertices = world.normals.size() / 3;
@@ -181,10 +216,27 @@ RTCGeometry triangle_geometry(const World& world, RTCDevice device, uint32_t obj
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, world.triangle_vertices.data(),
                              size_t{3} * sizeof(uint32_t) * world.objects.first_triangle[object], 3 * sizeof(uint32_t),
                              world.objects.triangle_count[object]);
-  if (!world.has_masks) return geometry;
-  rtcSetGeometryUserData(geometry, const_cast<World*>(&world));
-  rtcSetGeometryIntersectFilterFunction(geometry, filter_masked);
-  rtcSetGeometryOccludedFilterFunction(geometry, filter_masked);
+  set_masks(world, geometry);
+  return geometry;
+}
+
+RTCGeometry curve_geometry(const World& world, RTCDevice device, uint32_t object) {
+  const bool are_ribbons = kind_of(world, object) == ShapeKind::ribbons;
+  RTCGeometry geometry = rtcNewGeometry(
+      device, are_ribbons ? RTC_GEOMETRY_TYPE_NORMAL_ORIENTED_BEZIER_CURVE : RTC_GEOMETRY_TYPE_FLAT_BEZIER_CURVE);
+  const size_t points = world.curve_points.size() / 4;
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, world.curve_points.data(), 0,
+                             4 * sizeof(float), points);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, world.curve_segments.data(),
+                             sizeof(uint32_t) * world.objects.first_triangle[object], sizeof(uint32_t),
+                             world.objects.triangle_count[object]);
+  if (are_ribbons) {
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, world.curve_normals.data(), 0,
+                               3 * sizeof(float), points);
+  } else {
+    rtcSetGeometryTessellationRate(geometry, pieces_of_segment);
+  }
+  set_masks(world, geometry);
   return geometry;
 }
 
@@ -234,24 +286,25 @@ void build_accelerator(World& world) {
   RTCDevice device = accelerator->device;
   if (device == nullptr) throw std::runtime_error("Embree could not be started with " + config);
   accelerator->root = new_scene(device);
-  std::unordered_map<uint32_t, RTCScene> shared;  // by first triangle
+  std::unordered_map<uint32_t, RTCScene> shared[2];  // by first triangle; by first segment
   for (uint32_t object = 0; object < world.objects.size(); ++object) {
-    const bool is_mesh = world.objects.kind[object] == static_cast<uint32_t>(ShapeKind::mesh);
-    if (is_mesh && world.objects.triangle_count[object] == 0) continue;  // its id stays free
+    const bool is_mesh = kind_of(world, object) == ShapeKind::mesh, are_curves = is_curves(kind_of(world, object));
+    if ((is_mesh || are_curves) && world.objects.triangle_count[object] == 0) continue;  // its id stays free
+    const auto make_geometry = are_curves ? curve_geometry : triangle_geometry;
     RTCGeometry geometry = nullptr;
     const uint32_t placement = world.objects.placement[object];
-    if (!is_mesh) {
+    if (!is_mesh && !are_curves) {
       geometry = quadric_geometry(*accelerator, world, object);
     } else if (placement == 0) {
-      geometry = triangle_geometry(world, device, object);
+      geometry = make_geometry(world, device, object);
     } else {
-      RTCScene& mesh = shared[world.objects.first_triangle[object]];
+      RTCScene& mesh = shared[are_curves][world.objects.first_triangle[object]];
       if (mesh == nullptr) {
         mesh = new_scene(device);
-        RTCGeometry triangles = triangle_geometry(world, device, object);
-        rtcCommitGeometry(triangles);
-        rtcAttachGeometryByID(mesh, triangles, 0);
-        rtcReleaseGeometry(triangles);
+        RTCGeometry content = make_geometry(world, device, object);
+        rtcCommitGeometry(content);
+        rtcAttachGeometryByID(mesh, content, 0);
+        rtcReleaseGeometry(content);
         commit_on_one_thread(mesh);
         accelerator->shared_meshes.push_back(mesh);
       }
@@ -259,7 +312,7 @@ void build_accelerator(World& world) {
       rtcSetGeometryInstancedScene(geometry, mesh);
       rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, world.placements[placement].to_world);
     }
-    set_motion(world, object, is_mesh, geometry);
+    set_motion(world, object, is_mesh || are_curves, geometry);
     rtcSetGeometryMask(geometry, world.objects.visibility[object]);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(accelerator->root, geometry, object);

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 #include <optional>
 
+#include "engine/simd/portable_math.h"
+#include "systems/build_curves.h"
 #include "systems/build_light_images.h"
 #include "systems/build_motion.h"
 #include "systems/freeze.h"
@@ -18,6 +21,7 @@ namespace {
 
 constexpr double farthest = 1e18;          // metres; Embree's largest coordinate is 1.8e18
 constexpr double farthest_inverse = 1e36;  // float's largest number is 3.4e38
+constexpr float infinity = std::numeric_limits<float>::infinity();
 
 struct Builder {
   const Scene& scene;
@@ -26,6 +30,8 @@ struct Builder {
   std::vector<uint32_t> mesh_users;    // how many entities show a mesh
   std::vector<uint32_t> shared_first;  // first triangle of a mesh kept in its own space, or no_index
   std::vector<double> mesh_extent;     // largest coordinate of a mesh in its own space
+  std::vector<uint32_t> curve_users;
+  std::vector<SegmentRange> shared_curves[2];  // of curves that have been added; as ribbons
 };
 
 Placement make_placement(const glm::dmat4& to_world, const Geometry& geometry) {
@@ -38,17 +44,39 @@ Placement make_placement(const glm::dmat4& to_world, const Geometry& geometry) {
     }
   placement.radius = geometry.radius;
   placement.inner_radius = geometry.inner_radius;
-  placement.height = geometry.height;
+  if (geometry.kind == ShapeKind::disk) {
+    placement.z_min = placement.z_max = geometry.height;
+  } else {
+    // Where a sphere is whole its poles are not to be lost by rounding.
+    const bool is_sphere = geometry.kind == ShapeKind::sphere;
+    placement.z_min = is_sphere && geometry.z_min <= -geometry.radius ? -infinity : geometry.z_min;
+    placement.z_max = is_sphere && geometry.z_max >= geometry.radius ? infinity : geometry.z_max;
+  }
+  const double phi = double{geometry.phi_max_deg} * glm::pi<double>() / 180;
+  placement.phi_max = static_cast<float>(phi);
+  if (geometry.phi_max_deg < 360) {
+    placement.cos_phi_max = static_cast<float>(portable::cos(phi));
+    placement.sin_phi_max = static_cast<float>(portable::sin(phi));
+  }
   placement.normal_sign = geometry.flip_normal != 0 ? -1.0f : 1.0f;
   return placement;
 }
 
 // The largest coordinate of a shape in its own space: of a mesh's vertices, or of a box around a quadric or rectangle.
-double extent(const Geometry& geometry, const Mesh* mesh) {
-  if (mesh == nullptr)
-    return std::max({geometry.radius, std::abs(geometry.height), geometry.width / 2, geometry.depth / 2});
+double extent(const Geometry& geometry) {
+  const bool has_ends = geometry.kind == ShapeKind::cylinder;
+  const float end = has_ends ? std::max(std::abs(geometry.z_min), std::abs(geometry.z_max)) : 0;
+  return std::max({geometry.radius, std::abs(geometry.height), geometry.width / 2, geometry.depth / 2, end});
+}
+double extent(const Mesh& mesh) {
   float largest = 0;
-  for (const glm::vec3& p : mesh->positions) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  for (const glm::vec3& p : mesh.positions) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return double{largest};
+}
+double extent(const Curves& curves) {
+  float largest = 0;
+  for (const glm::vec4& p : curves.points)
+    largest = std::max({largest, std::abs(p.x) + p.w, std::abs(p.y) + p.w, std::abs(p.z) + p.w});
   return double{largest};
 }
 
@@ -235,8 +263,10 @@ void add_quadric_object(Builder& b, Entity entity, const Geometry& geometry, con
   if (!b.scene.registry.has<Light>(entity)) return;
   objects.first_light.back() = static_cast<uint32_t>(b.world.lights.size());
   const Light light = b.scene.registry.get<Light>(entity);
-  b.world.lights.push_back(geometry.kind == ShapeKind::sphere ? sphere_light(to_world, geometry, light)
-                                                              : disk_light(to_world, geometry, light));
+  const auto make_light = geometry.kind == ShapeKind::sphere     ? sphere_light
+                          : geometry.kind == ShapeKind::cylinder ? cylinder_light
+                                                                 : disk_light;
+  b.world.lights.push_back(make_light(to_world, geometry, light));
   finish_lights(b, entity);
 }
 
@@ -264,26 +294,60 @@ void add_light_finding(World& world) {
     world.light_finding.push_back(static_cast<uint32_t>(finding));
 }
 
+void add_curves_object(Builder& b, Entity entity, const Geometry& geometry, const Curves& curves, const Place& place) {
+  ObjectColumns& objects = b.world.objects;
+  if (b.scene.registry.has<Light>(entity)) {
+    b.diagnostics.error(b.scene.location(entity),
+                        fmt::format("{} cannot emit light: it is made of curves", b.scene.describe(entity)));
+  }
+  const bool alone = b.curve_users[geometry.curves] == 1 && geometry.flip_normal == 0 && !place.moves();
+  SegmentRange& known = b.shared_curves[geometry.kind == ShapeKind::ribbons][geometry.curves];
+  uint32_t placement = 0;
+  if (alone && is_turned_and_scaled(place.to_world)) {
+    known = add_curves(curves, geometry.kind, place.to_world, b.world);
+  } else {
+    if (known.first == no_index) known = add_curves(curves, geometry.kind, glm::dmat4(1), b.world);
+    placement = static_cast<uint32_t>(b.world.placements.size());
+    b.world.placements.push_back(make_placement(place.to_world, geometry));
+  }
+  objects.first_triangle.push_back(known.first);
+  objects.triangle_count.push_back(known.count);
+  objects.placement.push_back(placement);
+  b.world.has_curves = true;
+}
+
+// How often heavy data is shown, and that there is what entities name.
+void count_users(Builder& b) {
+  const Table<Geometry>& table = b.scene.registry.table<Geometry>();
+  b.mesh_users.resize(b.scene.meshes.size());
+  b.shared_first.resize(b.scene.meshes.size(), no_index);
+  b.curve_users.resize(b.scene.curves.size());
+  for (std::vector<SegmentRange>& shared : b.shared_curves) shared.resize(b.scene.curves.size());
+  b.scene.registry.each<Geometry>([&](Entity entity, uint32_t row) {
+    const Geometry geometry = table.get(row);
+    const bool are_curves = is_curves(geometry.kind);
+    if (geometry.kind != ShapeKind::mesh && !are_curves) return;
+    std::vector<uint32_t>& users = are_curves ? b.curve_users : b.mesh_users;
+    const uint32_t id = are_curves ? geometry.curves : geometry.mesh;
+    if (id < users.size()) {
+      ++users[id];
+    } else {
+      b.diagnostics.error(b.scene.location(entity), fmt::format("{} names {} not exist", b.scene.describe(entity),
+                                                                are_curves ? "curves that do" : "a mesh that does"));
+    }
+  });
+}
+
 }  // namespace
 
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
                     World& world, Diagnostics& diagnostics) {
   const Registry& registry = scene.registry;
-  Builder b{scene, world, diagnostics, {}, {}, {}};
-  b.mesh_users.resize(scene.meshes.size());
-  b.shared_first.resize(scene.meshes.size(), no_index);
+  Builder b{scene, world, diagnostics, {}, {}, {}, {}, {}};
   world.placements.push_back(make_placement(glm::dmat4(1), Geometry{}));
   const Table<Geometry>& table = registry.table<Geometry>();
-  registry.each<Geometry>([&](Entity entity, uint32_t row) {
-    const Geometry geometry = table.get(row);
-    if (geometry.kind != ShapeKind::mesh) return;
-    if (geometry.mesh >= scene.meshes.size())
-      diagnostics.error(scene.location(entity),
-                        fmt::format("{} names a mesh that does not exist", scene.describe(entity)));
-    else
-      ++b.mesh_users[geometry.mesh];
-  });
-  for (const Mesh& mesh : scene.meshes) b.mesh_extent.push_back(extent(Geometry{}, &mesh));
+  count_users(b);
+  for (const Mesh& mesh : scene.meshes) b.mesh_extent.push_back(extent(mesh));
   if (diagnostics.has_errors()) return;
   registry.each<Geometry>([&](Entity entity, uint32_t row) {
     const Geometry geometry = table.get(row);
@@ -296,7 +360,9 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
     objects.visibility.push_back(registry.get<Visibility>(entity).mask);
     objects.alpha.push_back(no_index);
     mask_object(b, geometry.alpha_texture);
-    const double size = geometry.kind == ShapeKind::mesh ? b.mesh_extent[geometry.mesh] : extent(geometry, nullptr);
+    const double size = geometry.kind == ShapeKind::mesh ? b.mesh_extent[geometry.mesh]
+                        : is_curves(geometry.kind)       ? extent(scene.curves[geometry.curves])
+                                                         : extent(geometry);
     const Place place = place_of(b, entity, to_world[entity.index]);
     add_motion(world, place);
     const bool reaches = std::all_of(place.keys.begin(), place.keys.end(),
@@ -310,12 +376,15 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
       add_mesh_object(b, entity, geometry, scene.meshes[geometry.mesh], place);
     else if (is_mesh)
       add_mesh_object(b, entity, geometry, rectangle_mesh(geometry), place);
+    else if (is_curves(geometry.kind))
+      add_curves_object(b, entity, geometry, scene.curves[geometry.curves], place);
     else
       add_quadric_object(b, entity, geometry, place.to_world);
     add_light_finding(world);
   });
   // Embree reads 16 bytes for the last vertex.
   for (int i = 0; i < 4; ++i) world.positions.push_back(0);
+  if (!world.curve_normals.empty()) world.curve_normals.push_back(0);
 }
 
 }  // namespace metamer

@@ -30,12 +30,24 @@ struct Box {
 // In the object's own space.
 Box object_box(const World& world, uint32_t object) {
   Box box;
-  if (world.objects.kind[object] != static_cast<uint32_t>(ShapeKind::mesh)) {
+  const auto kind = static_cast<ShapeKind>(world.objects.kind[object]);
+  if (is_curves(kind)) {
+    const uint32_t* segment = world.curve_segments.data() + world.objects.first_triangle[object];
+    for (uint32_t i = 0; i < world.objects.triangle_count[object]; ++i) {
+      for (size_t k = 0; k < 4; ++k) {
+        const float* p = world.curve_points.data() + 4 * (segment[i] + k);
+        box.include(glm::dvec3(p[0], p[1], p[2]) - double{p[3]});
+        box.include(glm::dvec3(p[0], p[1], p[2]) + double{p[3]});
+      }
+    }
+    return box;
+  }
+  if (kind != ShapeKind::mesh) {
     const Placement& shape = world.placements[world.objects.placement[object]];
-    const bool is_sphere = world.objects.kind[object] == static_cast<uint32_t>(ShapeKind::sphere);
-    const double r = shape.radius, z = is_sphere ? r : 0, height = is_sphere ? 0 : double{shape.height};
-    box.include({-r, -r, height - z});
-    box.include({r, r, height + z});
+    const double r = shape.radius;
+    const bool is_sphere = kind == ShapeKind::sphere;
+    box.include({-r, -r, is_sphere ? -r : double{shape.z_min}});
+    box.include({r, r, is_sphere ? r : double{shape.z_max}});
     return box;
   }
   const size_t first = size_t{3} * world.objects.first_triangle[object];
@@ -51,8 +63,9 @@ double scene_radius(const World& world) {
   Box scene;
   std::unordered_map<uint32_t, Box> shared;  // by first triangle: instances share their mesh's
   for (uint32_t object = 0; object < world.objects.size(); ++object) {
-    const bool is_mesh = world.objects.kind[object] == static_cast<uint32_t>(ShapeKind::mesh);
-    if (is_mesh && world.objects.triangle_count[object] == 0) continue;
+    const auto kind = static_cast<ShapeKind>(world.objects.kind[object]);
+    const bool is_mesh = kind == ShapeKind::mesh;
+    if ((is_mesh || is_curves(kind)) && world.objects.triangle_count[object] == 0) continue;
     const uint32_t mesh = world.objects.first_triangle[object];
     const auto known = is_mesh ? shared.find(mesh) : shared.end();
     const Box box = known != shared.end() ? known->second : object_box(world, object);

@@ -27,6 +27,7 @@ void start_ray(const World& world, const PathStream& paths, uint32_t i, RTCRayHi
   ray.ray.mask = visible_to_bounces;
   ray.ray.flags = 0;
   ray.ray.id = i;
+  ray.hit.u = 0;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 }
@@ -60,6 +61,7 @@ void intersect_camera(const World& world, const PathStream& paths, HitStream& hi
       hits.object[i + lane] = object_of(packet.hit.geomID[lane], packet.hit.instID[0][lane]);
       hits.primitive[i + lane] = packet.hit.primID[lane];
       hits.distance[i + lane] = packet.ray.tfar[lane];
+      hits.u[i + lane] = packet.hit.u[lane];
     }
   }
 }
@@ -77,6 +79,7 @@ void intersect_bounce(const World& world, const PathStream& paths, HitStream& hi
       hits.object[begin + k] = object_of(rays[k].hit.geomID, rays[k].hit.instID[0]);
       hits.primitive[begin + k] = rays[k].hit.primID;
       hits.distance[begin + k] = rays[k].ray.tfar;
+      hits.u[begin + k] = rays[k].hit.u;
     }
   }
 }

@@ -28,20 +28,40 @@ void store(float* target, const glm::dvec3& v) {
   for (int i = 0; i < 3; ++i) target[i] = static_cast<float>(v[i]);
 }
 
-// Area of an ellipsoid with half axes as columns: the mean of its area element over the unit sphere, by the product
-// midpoint rule, whose error is far below float precision at this size for smooth integrands.
-double ellipsoid_area(const glm::dmat3& axes) {
+double turns_of(const Geometry& geometry) { return double{geometry.phi_max_deg} / 360; }
+
+// Area of an ellipsoid with half axes as columns, or of the part of it that is the image of the unit sphere between two
+// heights and over some turns around z: the mean of its area element, by the product midpoint rule, whose error is far
+// below float precision at this size for a whole ellipsoid and below 1e-5 for parts.
+double ellipsoid_area(const glm::dmat3& axes, double z_min, double z_max, double turns) {
   constexpr int rings = 128, spokes = 256;
   const glm::dmat3 cofactor = glm::transpose(glm::inverse(axes)) * std::abs(glm::determinant(axes));
   double sum = 0;
   for (int i = 0; i < rings; ++i) {
-    const double z = -1 + (i + 0.5) * 2 / rings, r = std::sqrt(1 - z * z);
+    const double z = z_min + (i + 0.5) * (z_max - z_min) / rings, r = std::sqrt(1 - z * z);
     for (int j = 0; j < spokes; ++j) {
-      const double phi = (j + 0.5) * 2 * pi / spokes;
+      const double phi = (j + 0.5) * 2 * pi * turns / spokes;
       sum += glm::length(cofactor * glm::dvec3(r * cos(phi), r * sin(phi), z));
     }
   }
-  return 4 * pi * sum / (rings * spokes);
+  return 2 * pi * turns * (z_max - z_min) * sum / (rings * spokes);
+}
+
+// The same of a cylinder, whose axes are two radii and its height.
+double cylinder_area(const glm::dmat3& axes, double turns) {
+  constexpr int spokes = 4096;
+  double sum = 0;
+  for (int j = 0; j < spokes; ++j) {
+    const double phi = (j + 0.5) * 2 * pi * turns / spokes;
+    sum += glm::length(glm::cross(axes[1] * cos(phi) - axes[0] * sin(phi), axes[2]));
+  }
+  return 2 * pi * turns * sum / spokes;
+}
+
+void store_inverse(const glm::dmat3& axes, LightRow& row) {
+  const glm::dmat3 rows = glm::transpose(glm::inverse(axes));
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) row.inverse[3 * i + k] = static_cast<float>(rows[i][k]);
 }
 
 // 2 sin^2 of half the angle: without cancellation for narrow cones.
@@ -131,13 +151,31 @@ LightRow triangle_light(const glm::dvec3 (&vertex)[3], const glm::dvec2 (&uv)[3]
 
 LightRow sphere_light(const glm::dmat4& to_world, const Geometry& geometry, const Light& light) {
   const glm::dmat3 axes = glm::dmat3(to_world) * double{geometry.radius};
-  const bool round = is_similarity(axes);
+  const double z_min = std::clamp(double{geometry.z_min} / double{geometry.radius}, -1.0, 1.0);
+  const double z_max = std::clamp(double{geometry.z_max} / double{geometry.radius}, -1.0, 1.0);
+  const bool full = z_min == -1 && z_max == 1 && geometry.phi_max_deg >= 360;
+  const bool round = full && is_similarity(axes);
   LightRow row = row_of(round ? LightShape::sphere : LightShape::ellipsoid, light);
   store(row.p, glm::dvec3(to_world[3]));
   for (int i = 0; i < 3; ++i) store(row.axes + 3 * i, axes[i]);
-  const glm::dmat3 inverse = glm::inverse(axes);
-  for (int i = 0; i < 3; ++i) store(row.inverse + 3 * i, glm::transpose(inverse)[i]);
-  row.area = static_cast<float>(round ? 4 * pi * glm::dot(axes[0], axes[0]) : ellipsoid_area(axes));
+  store_inverse(axes, row);
+  store(row.normal, {z_min, z_max, turns_of(geometry)});
+  row.area = static_cast<float>(round ? 4 * pi * glm::dot(axes[0], axes[0])
+                                      : ellipsoid_area(axes, z_min, z_max, turns_of(geometry)));
+  row.normal_sign = geometry.flip_normal != 0 ? -1.0f : 1.0f;
+  return row;
+}
+
+LightRow cylinder_light(const glm::dmat4& to_world, const Geometry& geometry, const Light& light) {
+  LightRow row = row_of(LightShape::cylinder, light);
+  const glm::dmat3 linear(to_world);
+  const double radius = geometry.radius, height = double{geometry.z_max} - double{geometry.z_min};
+  const glm::dmat3 axes(linear[0] * radius, linear[1] * radius, linear[2] * height);
+  store(row.p, glm::dvec3(to_world * glm::dvec4(0, 0, geometry.z_min, 1)));
+  for (int i = 0; i < 3; ++i) store(row.axes + 3 * i, axes[i]);
+  store_inverse(axes, row);
+  row.normal[2] = static_cast<float>(turns_of(geometry));
+  row.area = static_cast<float>(cylinder_area(axes, turns_of(geometry)));
   row.normal_sign = geometry.flip_normal != 0 ? -1.0f : 1.0f;
   return row;
 }
@@ -153,7 +191,8 @@ LightRow disk_light(const glm::dmat4& to_world, const Geometry& geometry, const 
   const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(linear));
   const glm::dvec3 normal = glm::normalize(normal_matrix[2]) * (geometry.flip_normal != 0 ? -1.0 : 1.0);
   store(row.normal, normal);
-  row.area = static_cast<float>(pi * glm::length(glm::cross(x, y)) * (1 - inner * inner));
+  row.inverse[0] = static_cast<float>(turns_of(geometry));
+  row.area = static_cast<float>(pi * turns_of(geometry) * glm::length(glm::cross(x, y)) * (1 - inner * inner));
   row.inner = static_cast<float>(inner);
   return row;
 }

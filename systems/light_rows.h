@@ -12,10 +12,13 @@ namespace metamer {
 // A triangle; it emits from the side where its vertices run counter-clockwise. `uv` is for its image.
 LightRow triangle_light(const glm::dvec3 (&vertex)[3], const glm::dvec2 (&uv)[3], const Light& light);
 
-// A sphere, or the ellipsoid an affine map makes of it.
+// A sphere or a part of one, or the ellipsoid an affine map makes of it.
 LightRow sphere_light(const glm::dmat4& to_world, const Geometry& geometry, const Light& light);
 
-// A disk or ring, or the ellipse an affine map makes of it.
+// A cylinder, or what an affine map makes of it.
+LightRow cylinder_light(const glm::dmat4& to_world, const Geometry& geometry, const Light& light);
+
+// A disk or ring or a sector of one, or the ellipse an affine map makes of it.
 LightRow disk_light(const glm::dmat4& to_world, const Geometry& geometry, const Light& light);
 
 // A light that is no shape: at the origin of the matrix and along its -z axis (projections +z), or the row of an

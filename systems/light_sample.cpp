@@ -21,6 +21,15 @@ struct LightSample {
   VF image_u, image_v;  // only of lights with an image
 };
 
+// Uniform on the part of the unit sphere that the light's is the image of.
+HWY_INLINE Vec3 sample_unit_sphere_part(const LightFields& light, VF u, VF v) {
+  const Vec3 range = light.vector(offsetof(LightRow, normal));
+  const VF z = hn::NegMulAdd(u, hn::Sub(range.y, range.x), range.y);
+  const VF r = safe_sqrt(hn::Mul(hn::Sub(splat(1.0f), z), hn::Add(splat(1.0f), z)));
+  const SinCos phi = sincos_2pi(hn::Mul(v, range.z));
+  return {hn::Mul(r, phi.cos), hn::Mul(r, phi.sin), z};
+}
+
 // Uniform over the shape's area; works for a reference point anywhere.
 HWY_INLINE void sample_area(const World& world, const LightFields& light, VU shape, const Vec3& from, VF u, VF v,
                             LightSample& sample) {
@@ -43,7 +52,7 @@ HWY_INLINE void sample_area(const World& world, const LightFields& light, VU sha
     const VF inner = light.number(offsetof(LightRow, inner));
     const VF inner2 = hn::Mul(inner, inner);
     const VF r = hn::Sqrt(hn::MulAdd(u, hn::Sub(one, inner2), inner2));
-    const SinCos phi = sincos_2pi(v);
+    const SinCos phi = sincos_2pi(hn::Mul(v, light.number(offsetof(LightRow, inverse))));
     const Vec3 on_disk = mul_add(a, hn::Mul(r, phi.cos), mul_add(b, hn::Mul(r, phi.sin), p));
     point = if_then_else(disk, on_disk, point);
     const VF from_rim = hn::Div(hn::Sub(one, r), hn::Max(hn::Sub(one, inner), splat(1e-38f)));
@@ -52,14 +61,26 @@ HWY_INLINE void sample_area(const World& world, const LightFields& light, VU sha
   const MF round = hn::Or(is_shape(shape, LightShape::sphere), is_shape(shape, LightShape::ellipsoid));
   if (!hn::AllFalse(FloatTag(), round)) {
     const Vec3 c = light.vector(offsetof(LightRow, axes) + 24);
-    const Vec3 q = sample_uniform_sphere(u, v);
+    const Vec3 q = sample_unit_sphere_part(light, u, v);
     point = if_then_else(round, mul_add(a, q.x, mul_add(b, q.y, mul_add(c, q.z, p))), point);
     const VF sign = hn::IfThenElse(hn::Lt(dot(cross(a, b), c), zero), splat(-1.0f), one);
     const Vec3 area = mul_add(cross(b, c), q.x, mul_add(cross(c, a), q.y, cross(a, b) * q.z)) * sign;
     const Vec3 outside = normalize(area) * light.number(offsetof(LightRow, normal_sign));
     normal = if_then_else(round, outside, normal);
     pdf_area = hn::IfThenElse(round, ellipsoid_area_pdf(light, q), pdf_area);
-    if (world.has_shape_images) store_sphere_uv(round, q, &sample.image_u, &sample.image_v);
+    if (world.has_shape_images) store_sphere_uv(light, round, q, &sample.image_u, &sample.image_v);
+  }
+  const MF cylinder = is_shape(shape, LightShape::cylinder);
+  if (!hn::AllFalse(FloatTag(), cylinder)) {
+    const Vec3 c = light.vector(offsetof(LightRow, axes) + 24);
+    const SinCos phi = sincos_2pi(hn::Mul(v, light.number(offsetof(LightRow, normal) + 8)));
+    point = if_then_else(cylinder, mul_add(a, phi.cos, mul_add(b, phi.sin, mul_add(c, u, p))), point);
+    const Vec3 area = cylinder_area(light, phi.cos, phi.sin);
+    const VF sign = hn::IfThenElse(hn::Lt(dot(cross(a, b), c), zero), splat(-1.0f), one);
+    normal =
+        if_then_else(cylinder, normalize(area) * hn::Mul(sign, light.number(offsetof(LightRow, normal_sign))), normal);
+    pdf_area = hn::IfThenElse(cylinder, cylinder_area_pdf(light, area), pdf_area);
+    store_uv(cylinder, v, u, &sample.image_u, &sample.image_v);
   }
   const Vec3 to_light = point - from;
   const VF distance2 = hn::Max(dot(to_light, to_light), splat(1e-30f));
@@ -95,7 +116,7 @@ HWY_INLINE void sample_sphere_cone(const World& world, const LightFields& light,
   const VF weight = hn::Div(emission_profile(light, cos_light), pdf);
   sample.weight = hn::IfThenElse(outside, hn::IfThenElseZero(lit, weight), sample.weight);
   if (world.has_shape_images)
-    store_sphere_uv(outside, ellipsoid_unit_point(light, mul_add(direction, distance, from)), &sample.image_u,
+    store_sphere_uv(light, outside, ellipsoid_unit_point(light, mul_add(direction, distance, from)), &sample.image_u,
                     &sample.image_v);
 }
 

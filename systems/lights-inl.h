@@ -116,11 +116,19 @@ HWY_INLINE void store_uv(MF mask, VF u, VF v, VF* image_u, VF* image_v) {
   *image_v = hn::IfThenElse(mask, hn::Sub(splat(1.0f), v), *image_v);
 }
 // Of a sphere's (u, v) at a point of the unit sphere, as in systems/surface.cpp: v is down from the pole, as the
-// image's.
-HWY_INLINE void store_sphere_uv(MF mask, const Vec3& q, VF* image_u, VF* image_v) {
+// image's, or from the highest circle to the lowest one of a part.
+HWY_INLINE void store_sphere_uv(const LightFields& light, MF mask, const Vec3& q, VF* image_u, VF* image_v) {
+  const VF one = splat(1.0f), zero = hn::Zero(FloatTag());
   const ImagePoint point = latitude_longitude_point(q);
-  *image_u = hn::IfThenElse(mask, point.u, *image_u);
-  *image_v = hn::IfThenElse(mask, point.v, *image_v);
+  const Vec3 range = light.vector(offsetof(LightRow, normal));
+  const auto from_pole = [&](VF z) {
+    return hn::Mul(atan2(safe_sqrt(hn::Mul(hn::Sub(one, z), hn::Add(one, z))), z), splat(inverse_pi));
+  };
+  const VF top = from_pole(range.y), width = hn::Sub(from_pole(range.x), top);
+  const VF u = hn::Mul(point.u, safe_reciprocal(range.z));
+  const VF v = hn::Mul(hn::Sub(point.v, top), safe_reciprocal(width));
+  *image_u = hn::IfThenElse(mask, hn::Min(u, one), *image_u);
+  *image_v = hn::IfThenElse(mask, hn::Min(hn::Max(v, zero), one), *image_v);
 }
 
 // The cone under which a sphere is seen from outside.
@@ -144,16 +152,29 @@ HWY_INLINE SphereCone sphere_cone(const LightFields& light, const Vec3& from) {
   return cone;
 }
 
-// Density per area of the ellipsoid's points, at a point of it: uniform on the unit sphere it is the image of.
+// Density per area of the ellipsoid's points, at a point of it: uniform on the part of the unit sphere it is the image
+// of.
 HWY_INLINE VF ellipsoid_area_pdf(const LightFields& light, const Vec3& unit_point) {
   const Vec3 a = light.vector(offsetof(LightRow, axes)), b = light.vector(offsetof(LightRow, axes) + 12);
   const Vec3 c = light.vector(offsetof(LightRow, axes) + 24);
   // The cofactor matrix maps the unit sphere's normal to the area vector of its image.
   const Vec3 area = mul_add(cross(b, c), unit_point.x, mul_add(cross(c, a), unit_point.y, cross(a, b) * unit_point.z));
-  return hn::Div(splat(0.25f * inverse_pi), hn::Sqrt(hn::Max(dot(area, area), splat(1e-38f))));
+  const Vec3 range = light.vector(offsetof(LightRow, normal));
+  const VF unit_area = hn::Mul(hn::Mul(splat(2 * pi), range.z), hn::Sub(range.y, range.x));
+  return hn::Div(splat(1.0f), hn::Mul(unit_area, hn::Sqrt(hn::Max(dot(area, area), splat(1e-38f)))));
 }
 HWY_INLINE Vec3 ellipsoid_unit_point(const LightFields& light, const Vec3& position) {
   return normalize(light_local(light, position - light.vector(offsetof(LightRow, p))));
+}
+
+// The cylinder's area vector, outwards where the axes are right-handed, per radian and part of its height.
+HWY_INLINE Vec3 cylinder_area(const LightFields& light, VF cos_phi, VF sin_phi) {
+  const Vec3 a = light.vector(offsetof(LightRow, axes)), b = light.vector(offsetof(LightRow, axes) + 12);
+  return cross(b * cos_phi - a * sin_phi, light.vector(offsetof(LightRow, axes) + 24));
+}
+HWY_INLINE VF cylinder_area_pdf(const LightFields& light, const Vec3& area) {
+  const VF angle = hn::Mul(splat(2 * pi), light.number(offsetof(LightRow, normal) + 8));
+  return hn::Div(splat(1.0f), hn::Mul(angle, hn::Sqrt(hn::Max(dot(area, area), splat(1e-38f)))));
 }
 
 HWY_INLINE VF area_to_solid_angle(VF pdf_area, VF distance2, VF cos_light) {
@@ -169,6 +190,12 @@ HWY_INLINE VF area_light_pdf(const LightFields& light, const Vec3& from, const V
   const MF ellipsoid = is_shape(shape, LightShape::ellipsoid);
   if (!hn::AllFalse(FloatTag(), ellipsoid))
     pdf_area = hn::IfThenElse(ellipsoid, ellipsoid_area_pdf(light, ellipsoid_unit_point(light, position)), pdf_area);
+  const MF cylinder = is_shape(shape, LightShape::cylinder);
+  if (!hn::AllFalse(FloatTag(), cylinder)) {
+    const Vec3 q = light_local(light, position - light.vector(offsetof(LightRow, p)));
+    const Vec3 around = normalize(Vec3{q.x, q.y, hn::Zero(FloatTag())});
+    pdf_area = hn::IfThenElse(cylinder, cylinder_area_pdf(light, cylinder_area(light, around.x, around.y)), pdf_area);
+  }
   VF pdf = area_to_solid_angle(pdf_area, hn::Mul(distance, distance), dot(normal, direction));
   const MF sphere = is_shape(shape, LightShape::sphere);
   if (!hn::AllFalse(FloatTag(), sphere)) {

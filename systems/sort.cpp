@@ -15,6 +15,7 @@ RayHit ray_hit(const World& world, const PathStream& paths, const HitStream& hit
   hit.object = hits.object[path];
   hit.primitive = hits.primitive[path];
   hit.distance = hits.distance[path];
+  hit.u = hits.u[path];
   return hit;
 }
 

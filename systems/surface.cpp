@@ -3,28 +3,15 @@
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 // Highway's headers come after foreach_target.
 #include "engine/simd/math-inl.h"
+#include "systems/curve_surface-inl.h"
 #include "systems/lanes-inl.h"
 #include "systems/placement-inl.h"
-#include "systems/surface_slopes-inl.h"
+#include "systems/surface-inl.h"
 #include "systems/systems.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
 namespace {
-
-HWY_INLINE Vec3 abs(const Vec3& v) { return {hn::Abs(v.x), hn::Abs(v.y), hn::Abs(v.z)}; }
-HWY_INLINE Vec3 max(const Vec3& a, const Vec3& b) { return {hn::Max(a.x, b.x), hn::Max(a.y, b.y), hn::Max(a.z, b.z)}; }
-HWY_INLINE VF largest(const Vec3& v) { return hn::Max(hn::Max(v.x, v.y), v.z); }
-
-struct Surface {
-  Vec3 position, normal, shading_normal, tangent;
-  VF u, v;
-  VF offset;
-  SurfaceSlopes slopes;  // where the world has bumps
-};
-
-// Unit roundoff of float.
-constexpr float eps = 5.9604645e-8f;
 
 // The point where the ray meets the plane of the triangle, as barycentrics clamped into the triangle: computed here
 // and not taken from Embree, whose arithmetic depends on how it traced the ray. Moeller & Trumbore, JGT 2(1), 1997.
@@ -118,23 +105,36 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
     surface.tangent = if_then_else(hn::Eq(uv_area, zero), make_frame(shading).s, along_u);
     if (world.has_bumps) {
       if (world.has_instances)
-        for (Vec3& normal : n) normal = if_then_else(placed, transform_normal(inverse, normal), normal);
+        for (Vec3& normal : n) normal = if_then_else(placed, transform_normal(place.inverse, normal), normal);
       surface.slopes = triangle_slopes({du1, dv1, du2, dv2}, e1, e2, n, smooth, shading);
     }
   }
   return surface;
 }
 
-// u is the angle around z over 2 pi. v runs on a sphere from the lower pole to the upper one, by angle; on a disk from
-// its rim (0) to its inner edge (1).
-HWY_INLINE void quadric_uv(const Vec3& local, VF radius, VF inner_radius, MF sphere, Surface& surface) {
-  const VF zero = hn::Zero(FloatTag()), one = splat(1.0f);
-  const VF around = hn::Mul(atan2(local.y, local.x), splat(0.5f * inverse_pi));
-  surface.u = hn::IfThenElse(hn::Lt(around, zero), hn::Add(around, one), around);
+// As pbrt-v4. u is the angle around z over the largest one. v runs on a sphere from its lowest circle to its highest,
+// by angle; on a cylinder from end to end; on a disk from its rim (0) to its inner edge (1).
+HWY_INLINE void quadric_uv(const Placement& first, VI base, const Vec3& local, VU kind, Surface& surface) {
+  const VF zero = hn::Zero(FloatTag());
+  const VF radius = gather(&first.radius, base), phi_max = gather(&first.phi_max, base);
+  VF around = atan2(local.y, local.x);
+  around = hn::IfThenElse(hn::Lt(around, zero), hn::Add(around, splat(two_pi)), around);
+  // Rounding must not take the first edge to behind the last one.
+  around = hn::IfThenElseZero(hn::Le(around, hn::MulAdd(phi_max, splat(0.5f), splat(pi))), around);
+  surface.u = hn::Min(hn::Div(around, phi_max), splat(1.0f));
   const VF across = hn::Sqrt(hn::MulAdd(local.x, local.x, hn::Mul(local.y, local.y)));
-  const VF from_top = hn::Mul(atan2(across, local.z), splat(inverse_pi));
-  const VF width = hn::Max(hn::Sub(radius, inner_radius), splat(FLT_MIN));
-  surface.v = hn::IfThenElse(sphere, hn::Sub(one, from_top), hn::Div(hn::Sub(radius, across), width));
+  const auto polar = [&](VF z) {
+    const VF r2 = hn::Mul(hn::Sub(radius, z), hn::Add(radius, z));
+    return atan2(safe_sqrt(r2), z);
+  };
+  const VF z_min = gather(&first.z_min, base), z_max = gather(&first.z_max, base);
+  const VF lowest = polar(hn::Max(z_min, hn::Neg(radius))), highest = polar(hn::Min(z_max, radius));
+  const MF sphere = is_kind(kind, ShapeKind::sphere), cylinder = is_kind(kind, ShapeKind::cylinder);
+  const VF rim = hn::IfThenElse(cylinder, z_min, radius),
+           end = hn::IfThenElse(cylinder, z_max, gather(&first.inner_radius, base));
+  const VF from = hn::IfThenElse(sphere, lowest, rim), to = hn::IfThenElse(sphere, highest, end);
+  const VF at = hn::IfThenElse(sphere, atan2(across, local.z), hn::IfThenElse(cylinder, local.z, across));
+  surface.v = hn::Min(hn::Max(hn::Mul(hn::Sub(at, from), safe_reciprocal(hn::Sub(to, from))), zero), splat(1.0f));
 }
 
 // The distance comes from our own double-precision callback; the point is put back onto the quadric.
@@ -148,15 +148,21 @@ HWY_INLINE Surface quadric_surface(const World& world, const Vec3& origin, const
   const auto [m, inverse, moves] = object_to_world(world, object, placement, time);
   const VF radius = gather(&first.radius, base);
   const VU kind = gather(world.objects.kind.data(), object);
-  const MF sphere = float_mask(hn::Eq(kind, splat_u(static_cast<uint32_t>(ShapeKind::sphere))));
+  const MF sphere = is_kind(kind, ShapeKind::sphere), cylinder = is_kind(kind, ShapeKind::cylinder);
   Vec3 local = transform_point(inverse, mul_add(direction, distance, origin));
   const VF to_sphere = hn::Div(radius, hn::Sqrt(hn::Max(dot(local, local), splat(1e-30f))));
-  local = if_then_else(sphere, local * to_sphere, Vec3{local.x, local.y, gather(&first.height, base)});
+  const VF across = hn::Sqrt(hn::MulAdd(local.x, local.x, hn::Mul(local.y, local.y)));
+  const VF to_cylinder = hn::IfThenElse(cylinder, hn::Div(radius, hn::Max(across, splat(1e-30f))), one);
+  const VF z_min = gather(&first.z_min, base), z_max = gather(&first.z_max, base);
+  const Vec3 between = {hn::Mul(local.x, to_cylinder), hn::Mul(local.y, to_cylinder),
+                        hn::Min(hn::Max(local.z, z_min), z_max)};
+  local = if_then_else(sphere, local * to_sphere, between);
   Surface surface;
   const Vec3 linear = transform_vector(m, local);
   surface.position = linear + m.translation;
-  const Vec3 up = {zero, zero, one};
-  const Vec3 normal = transform_normal(inverse, if_then_else(sphere, local, up));
+  const Vec3 outwards = {hn::IfThenElseZero(cylinder, local.x), hn::IfThenElseZero(cylinder, local.y),
+                         hn::IfThenElse(cylinder, zero, one)};
+  const Vec3 normal = transform_normal(inverse, if_then_else(sphere, local, outwards));
   const VF side = gather(&first.normal_sign, base);
   surface.normal = normalize(normal) * side;
   surface.shading_normal = surface.normal;
@@ -168,14 +174,14 @@ HWY_INLINE Surface quadric_surface(const World& world, const Vec3& origin, const
   const Vec3 along = {hn::Neg(local.y), local.x, zero};
   const MF pole = hn::Eq(hn::Add(hn::Abs(local.x), hn::Abs(local.y)), zero);
   surface.tangent = transform_vector(m, if_then_else(pole, Vec3{one, zero, zero}, along));
-  const VF inner_radius = gather(&first.inner_radius, base);
-  if (world.needs_uvs()) quadric_uv(local, radius, inner_radius, sphere, surface);
+  if (world.needs_uvs()) quadric_uv(first, base, local, kind, surface);
   if (world.has_bumps) {
-    // The normal of a sphere turns as the point does.
-    const VF bend = hn::IfThenElseZero(sphere, hn::Div(side, hn::Sqrt(dot(normal, normal))));
-    const Slopes p = quadric_slopes(local, radius, inner_radius, sphere);
+    // The normal of a sphere or cylinder turns as the point does; on a cylinder not along it.
+    const VF bend = hn::Div(side, hn::Sqrt(dot(normal, normal)));
+    const VF around = hn::IfThenElseZero(hn::Or(sphere, cylinder), bend), down = hn::IfThenElseZero(sphere, bend);
+    const Slopes p = quadric_slopes(first, base, local, sphere, cylinder);
     surface.slopes = {{transform_vector(m, p.along_u), transform_vector(m, p.along_v)},
-                      {transform_normal(inverse, p.along_u) * bend, transform_normal(inverse, p.along_v) * bend}};
+                      {transform_normal(inverse, p.along_u) * around, transform_normal(inverse, p.along_v) * down}};
   }
   return surface;
 }
@@ -220,27 +226,27 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     const Vec3 origin = gather(paths.origin, path), direction = gather(paths.direction, path);
     const VF time = world.has_motion ? gather(paths.time, path) : hn::Zero(FloatTag());
     const VU kind = gather(world.objects.kind.data(), object);
-    const MF quadric = hn::And(live, float_mask(hn::Ne(kind, splat_u(static_cast<uint32_t>(ShapeKind::mesh)))));
-    const MF triangle = hn::AndNot(quadric, live);
-    // Lanes that are all dead count as quadrics where there are any: then there need be no triangle to look at.
-    const bool any_quadric =
-        world.has_quadrics && (!hn::AllFalse(FloatTag(), quadric) || hn::AllFalse(FloatTag(), triangle));
+    const MF triangle = hn::And(live, is_kind(kind, ShapeKind::mesh));
+    const VU last_quadric = splat_u(static_cast<uint32_t>(ShapeKind::cylinder));
+    const MF curve = hn::And(live, float_mask(hn::Lt(last_quadric, kind)));
+    const MF quadric = hn::AndNot(triangle, hn::AndNot(curve, live));
+    // Lanes that are all dead look at what there is.
+    const FloatTag d;
+    const bool idle = hn::AllFalse(d, live);
+    const bool quadrics = world.has_quadrics && (idle || !hn::AllFalse(d, quadric));
+    const bool curves = world.has_curves && ((idle && !quadrics) || !hn::AllFalse(d, curve));
+    const bool triangles = (idle && !quadrics && !curves) || !hn::AllFalse(d, triangle);
+    const VF distance = gather(hits.distance, path);
     Surface s;
-    if (!any_quadric) {
-      s = triangle_surface(world, origin, direction, time, object, primitive, triangle);
-    } else {
-      const Surface q = quadric_surface(world, origin, direction, time, object, gather(hits.distance, path));
-      s = q;
-      if (!hn::AllFalse(FloatTag(), triangle))
-        s = triangle_surface(world, origin, direction, time, object, primitive, triangle);
-      s.position = if_then_else(quadric, q.position, s.position);
-      s.normal = if_then_else(quadric, q.normal, s.normal);
-      s.shading_normal = if_then_else(quadric, q.shading_normal, s.shading_normal);
-      s.tangent = if_then_else(quadric, q.tangent, s.tangent);
-      s.u = hn::IfThenElse(quadric, q.u, s.u);
-      s.v = hn::IfThenElse(quadric, q.v, s.v);
-      s.offset = hn::IfThenElse(quadric, q.offset, s.offset);
-      s.slopes = if_then_else(quadric, q.slopes, s.slopes);
+    if (triangles) s = triangle_surface(world, origin, direction, time, object, primitive, triangle);
+    if (quadrics) {
+      const Surface q = quadric_surface(world, origin, direction, time, object, distance);
+      s = triangles ? select(quadric, q, s) : q;
+    }
+    if (curves) {
+      const VF u = gather(hits.u, path);
+      const Surface c = curve_surface(world, origin, direction, time, object, primitive, u, distance, curve);
+      s = triangles || quadrics ? select(curve, c, s) : c;
     }
     store(s.position, shade.position, i);
     store(s.normal, shade.normal, i);
@@ -271,11 +277,18 @@ SurfacePoint surface_point_kernel(const World& world, const RayHit& hit) {
   const Vec3 origin = {splat(hit.origin[0]), splat(hit.origin[1]), splat(hit.origin[2])};
   const Vec3 direction = {splat(hit.direction[0]), splat(hit.direction[1]), splat(hit.direction[2])};
   const VI object = hn::Set(IntTag(), static_cast<int32_t>(hit.object));
-  const bool is_mesh = world.objects.kind[hit.object] == static_cast<uint32_t>(ShapeKind::mesh);
+  const auto kind = static_cast<ShapeKind>(world.objects.kind[hit.object]);
   const MF all = hn::Eq(origin.x, origin.x);
   const VF time = splat(hit.time);
-  const Surface s = is_mesh ? triangle_surface(world, origin, direction, time, object, splat_u(hit.primitive), all)
-                            : quadric_surface(world, origin, direction, time, object, splat(hit.distance));
+  const VU primitive = splat_u(hit.primitive);
+  const VF distance = splat(hit.distance);
+  Surface s;
+  if (kind == ShapeKind::mesh)
+    s = triangle_surface(world, origin, direction, time, object, primitive, all);
+  else if (is_curves(kind))
+    s = curve_surface(world, origin, direction, time, object, primitive, splat(hit.u), distance, all);
+  else
+    s = quadric_surface(world, origin, direction, time, object, distance);
   const auto first = [](VF v) { return hn::GetLane(v); };
   return {{first(s.u), first(s.v)},
           {first(s.position.x), first(s.position.y), first(s.position.z)},

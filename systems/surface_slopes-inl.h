@@ -8,8 +8,10 @@
 
 #include <cfloat>
 
+#include "engine/ecs/world.h"
 #include "engine/simd/math-inl.h"
 #include "engine/simd/vec3-inl.h"
+#include "systems/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
@@ -54,19 +56,23 @@ HWY_INLINE SurfaceSlopes triangle_slopes(const UvEdges& uv, const Vec3& e1, cons
           if_then_else(smooth, linear_slopes(uv, n[1] - n[0], n[2] - n[0]), Slopes{none, none})};
 }
 
-// The slopes of a point of a sphere around the origin, or else of a disk around the z axis, by its coordinates.
-HWY_INLINE Slopes quadric_slopes(const Vec3& local, VF radius, VF inner_radius, MF sphere) {
+// The slopes of a point of a quadric by its coordinates, those of quadric_uv in systems/surface.cpp.
+HWY_INLINE Slopes quadric_slopes(const Placement& first, VI base, const Vec3& local, MF sphere, MF cylinder) {
   const VF zero = hn::Zero(FloatTag()), one = splat(1.0f);
+  const VF radius = gather(&first.radius, base), z_min = gather(&first.z_min, base), z_max = gather(&first.z_max, base);
   const VF across = hn::Sqrt(hn::MulAdd(local.x, local.x, hn::Mul(local.y, local.y)));
   const MF centre = hn::Le(across, zero);
   const VF inverse_across = hn::Div(one, hn::Max(across, splat(FLT_MIN)));
   const VF cos_phi = hn::IfThenElse(centre, one, hn::Mul(local.x, inverse_across));
   const VF sin_phi = hn::IfThenZeroElse(centre, hn::Mul(local.y, inverse_across));
-  const VF turn = splat(two_pi), width = hn::Sub(inner_radius, radius);
+  const VF turn = gather(&first.phi_max, base), width = hn::Sub(gather(&first.inner_radius, base), radius);
+  const auto polar = [&](VF z) { return atan2(safe_sqrt(hn::Mul(hn::Sub(radius, z), hn::Add(radius, z))), z); };
+  const VF descent = hn::Sub(polar(hn::Min(z_max, radius)), polar(hn::Max(z_min, hn::Neg(radius))));
   const Vec3 by_polar = {hn::Mul(local.z, cos_phi), hn::Mul(local.z, sin_phi), hn::Neg(across)};
   const Vec3 inwards = {hn::Mul(width, cos_phi), hn::Mul(width, sin_phi), zero};
+  const Vec3 upwards = {zero, zero, hn::IfThenElseZero(cylinder, hn::Sub(z_max, z_min))};
   return {{hn::Neg(hn::Mul(turn, local.y)), hn::Mul(turn, local.x), zero},
-          if_then_else(sphere, by_polar * splat(-pi), inwards)};
+          if_then_else(sphere, by_polar * descent, if_then_else(cylinder, upwards, inwards))};
 }
 
 }  // namespace metamer::HWY_NAMESPACE

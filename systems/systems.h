@@ -65,7 +65,8 @@ void surface(const World& world, const PathStream& paths, const HitStream& hits,
 struct RayHit {
   float origin[3] = {}, direction[3] = {};
   uint32_t object = 0, primitive = 0;
-  float distance = 0;  // of quadrics
+  float distance = 0;  // of quadrics and curves
+  float u = 0;         // of curves
   float time = 0;      // where the world has motion
 };
 // What textures may ask about it.

@@ -27,6 +27,12 @@ glm::dvec2 equal_area_uv(const Vector& d) {
   return {(std::copysign(u, d.x) + 1) / 2, (std::copysign(v, d.y) + 1) / 2};
 }
 
+// The angle of (x, y) in turns, from 0 to 1.
+double turns_of(double x, double y) {
+  const double turns = std::atan2(y, x) / (2 * pi);
+  return turns < 0 ? turns + 1 : turns;
+}
+
 double sigmoid_at(const float* c, double lambda_nm) { return sigmoid_polynomial({c[0], c[1], c[2]}, lambda_nm); }
 
 // The texel, or linear between the centres of four, around the circle or clamped.
@@ -177,18 +183,24 @@ ReferenceLightPoint reference_light_point(const LightRow& row, const Vector& fro
     if (glm::dot(area, read3(row.normal)) < 0) area = -area;
   } else if (shape == LightShape::disk) {
     double x = 0, y = 0, r2 = 2;
-    while (r2 > 1 || r2 < double{row.inner} * row.inner) {
+    const double turns = row.inverse[0];
+    while (r2 > 1 || r2 < double{row.inner} * row.inner || turns_of(x, y) > turns) {
       x = 2 * random() - 1, y = 2 * random() - 1;
       r2 = x * x + y * y;
     }
     at = p + a * x + b * y;
-    area = read3(row.normal) * (pi * (1 - double{row.inner} * row.inner) * glm::length(glm::cross(a, b)));
+    area = read3(row.normal) * (pi * turns * (1 - double{row.inner} * row.inner) * glm::length(glm::cross(a, b)));
   } else {
-    const Vector q = reference_direction(random);
+    const bool is_cylinder = shape == LightShape::cylinder;
+    const double turns = row.normal[2], phi = 2 * pi * turns * random();
+    const double z_min = is_cylinder ? 0.0 : double{row.normal[0]}, z_max = is_cylinder ? 1.0 : double{row.normal[1]};
+    const double z = z_min + (z_max - z_min) * random(), r = is_cylinder ? 1 : std::sqrt(std::max(0.0, 1 - z * z));
+    const Vector q(r * std::cos(phi), r * std::sin(phi), z);
     const glm::dmat3 axes(a, b, c);
     at = p + axes * q;
-    area = std::abs(glm::determinant(axes)) * (glm::transpose(glm::inverse(axes)) * q) * (4 * pi) *
-           double{row.normal_sign};
+    const Vector outwards = is_cylinder ? Vector(q.x, q.y, 0) : q;
+    area = std::abs(glm::determinant(axes)) * (glm::transpose(glm::inverse(axes)) * outwards) *
+           (2 * pi * turns * (z_max - z_min)) * double{row.normal_sign};
   }
   const double d = glm::length(at - from);
   sample.direction = (at - from) / d;

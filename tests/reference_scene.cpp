@@ -73,16 +73,19 @@ void meet_quadric(const World& world, double least_distance, const ReferenceQuad
                   const Vector& direction, ReferenceHit& hit) {
   const Placement& shape = world.placements[world.objects.placement[q.object]];
   const Vector o = point(q.to_object, origin), d = vector(q.to_object, direction);
-  const bool is_sphere = world.objects.kind[q.object] == static_cast<uint32_t>(ShapeKind::sphere);
+  const auto kind = static_cast<ShapeKind>(world.objects.kind[q.object]);
+  const bool is_disk = kind == ShapeKind::disk;
   double roots[2] = {infinity, infinity};
-  if (is_sphere) {
-    const double a = glm::dot(d, d), half_b = glm::dot(o, d), c = glm::dot(o, o) - double{shape.radius} * shape.radius;
+  if (!is_disk) {
+    const Vector flat(1, 1, kind == ShapeKind::sphere ? 1 : 0);
+    const double a = glm::dot(d * flat, d), half_b = glm::dot(o * flat, d);
+    const double c = glm::dot(o * flat, o) - double{shape.radius} * shape.radius;
     const double discriminant = half_b * half_b - a * c;
-    if (discriminant < 0) return;
+    if (discriminant < 0 || a == 0) return;
     roots[0] = (-half_b - std::sqrt(discriminant)) / a;
     roots[1] = (-half_b + std::sqrt(discriminant)) / a;
   } else if (d.z != 0) {
-    roots[0] = (shape.height - o.z) / d.z;
+    roots[0] = (shape.z_min - o.z) / d.z;
   }
   // The one just left is a root near zero.
   const double least = std::max(least_distance, 1e-9 * shape.radius);
@@ -90,9 +93,12 @@ void meet_quadric(const World& world, double least_distance, const ReferenceQuad
     if (!(t > least && t < hit.t)) continue;
     const Vector local = o + t * d;
     const double r = std::hypot(local.x, local.y);
-    if (!is_sphere && (r > shape.radius || r < shape.inner_radius)) continue;
-    const Vector n =
-        glm::normalize(normal(q.to_object, is_sphere ? local : Vector(0, 0, 1))) * double{shape.normal_sign};
+    if (is_disk && (r > shape.radius || r < shape.inner_radius)) continue;
+    if (!is_disk && (local.z < shape.z_min || local.z > shape.z_max)) continue;
+    const double phi = std::atan2(local.y, local.x);
+    if ((phi < 0 ? phi + 2 * M_PI : phi) > shape.phi_max) continue;
+    const Vector outwards = is_disk ? Vector(0, 0, 1) : kind == ShapeKind::sphere ? local : Vector(local.x, local.y, 0);
+    const Vector n = glm::normalize(normal(q.to_object, outwards)) * double{shape.normal_sign};
     const Vector tangent = r > 0 ? vector(q.to_world, Vector(-local.y, local.x, 0)) : vector(q.to_world, {1, 0, 0});
     hit = {t, q.object, world.objects.first_light[q.object], origin + t * direction, n, n, tangent};
     return;
@@ -107,7 +113,7 @@ ReferenceScene::ReferenceScene(const World& frozen) : world(frozen) {
     const glm::dmat4 m = matrix_of(world.placements[world.objects.placement[object]]);
     if (world.objects.kind[object] == static_cast<uint32_t>(ShapeKind::mesh))
       for (uint32_t i = 0; i < world.objects.triangle_count[object]; ++i) add_triangle(*this, object, i, m);
-    else
+    else if (!is_curves(static_cast<ShapeKind>(world.objects.kind[object])))
       quadrics.push_back({m, glm::inverse(m), object});
     reach = std::max({reach, glm::length(m[0]), glm::length(m[1]), glm::length(m[2])});
   }

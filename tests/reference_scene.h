@@ -1,4 +1,5 @@
-// What the oracle knows of surfaces: brute-force intersection in double precision over the world's columns.
+// What the oracle knows of surfaces, curves apart: brute-force intersection in double precision over the world's
+// columns.
 #pragma once
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>

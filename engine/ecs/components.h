@@ -3,6 +3,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <limits>
 
 #include "engine/ecs/registry.h"
 #include "engine/ecs/texture.h"
@@ -11,6 +12,7 @@ namespace metamer {
 
 using SpectrumId = uint32_t;  // a row of Scene::spectra
 using MeshId = uint32_t;      // an index into Scene::meshes
+using CurvesId = uint32_t;    // an index into Scene::curves
 using ImageId = uint32_t;     // an index into Scene::images
 using NameId = uint32_t;      // an index into Scene::names
 
@@ -36,22 +38,33 @@ struct Parent {
   static constexpr auto fields = std::make_tuple(&Parent::entity);
 };
 
-enum class ShapeKind : uint32_t { mesh, sphere, disk, rectangle };
+enum class ShapeKind : uint32_t { mesh, sphere, disk, rectangle, cylinder, flat_curves, ribbons, round_curves };
+constexpr bool is_curves(ShapeKind kind) { return kind >= ShapeKind::flat_curves; }
 
 // A shape in its local space, metres.
 //   mesh       `mesh`; several entities may name one mesh: they share it as instances
-//   sphere     around the origin, `radius`
+//   sphere     around the origin, `radius`, what of it is between `z_min` and `z_max`
 //   disk       in the plane z = `height`, normal +z, `inner_radius` to `radius`
+//   cylinder   around the z axis, `radius`, from `z_min` to `z_max`, which differ; open, normal outwards
 //   rectangle  in the plane z = 0, normal +z, `width` along x and `depth` along y, centred
+//   sphere, disk and cylinder reach from the x axis counter-clockwise around z to `phi_max_deg`
+//   flat_curves, ribbons, round_curves  `curves`; they emit no light
+//     flat     turned to whoever looks along the width; the outside is the side seen
+//     ribbons  turned as their normals say, which name the outside
+//     round    flat, too, but with the normals of a tube
 struct Geometry {
   ShapeKind kind = ShapeKind::mesh;
   MeshId mesh = no_index;
   float radius = 1, inner_radius = 0, height = 0, width = 1, depth = 1;
   uint32_t flip_normal = 0;            // 1: the side an area light emits to, and the normal, are the other one
   TextureId alpha_texture = no_index;  // a number: the chance that a ray meets the surface at all; none: 1
+  float z_min = -std::numeric_limits<float>::infinity(), z_max = std::numeric_limits<float>::infinity();
+  float phi_max_deg = 360;  // above 0
+  CurvesId curves = no_index;
   static constexpr auto fields =
       std::make_tuple(&Geometry::kind, &Geometry::mesh, &Geometry::radius, &Geometry::inner_radius, &Geometry::height,
-                      &Geometry::width, &Geometry::depth, &Geometry::flip_normal, &Geometry::alpha_texture);
+                      &Geometry::width, &Geometry::depth, &Geometry::flip_normal, &Geometry::alpha_texture,
+                      &Geometry::z_min, &Geometry::z_max, &Geometry::phi_max_deg, &Geometry::curves);
 };
 
 enum class MaterialKind : uint32_t {

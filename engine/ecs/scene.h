@@ -27,6 +27,14 @@ struct Mesh {
   Column<uint32_t> indices;  // three per triangle, counter-clockwise seen from the side of the normal
 };
 
+// Cubic Bezier curves with a width, in local space. A curve of several segments shares their ends.
+struct Curves {
+  std::string name;
+  Column<glm::vec4> points;   // metres; w: half of the width
+  Column<glm::vec3> normals;  // ribbons: one per point, whose Bezier curve is the direction of the ribbon's normal
+  Column<uint32_t> segments;  // the first of four points of each
+};
+
 // Linear RGB, row by row from the top.
 struct Image {
   std::string name;
@@ -106,6 +114,7 @@ struct Scene {
   Registry registry;
   SpectrumSet spectra;
   std::vector<Mesh> meshes;
+  std::vector<Curves> curves;
   std::vector<Image> images;
   std::vector<Texture> textures;
   NameTable names;

@@ -10,29 +10,31 @@
 
 namespace metamer {
 
-// Surfaces by object: a triangle mesh, or one quadric.
+// Surfaces by object: a triangle mesh, one quadric, or curves.
 struct ObjectColumns {
-  Column<uint32_t> kind;            // ShapeKind: mesh, sphere or disk (rectangles are meshes here)
-  Column<uint32_t> first_triangle;  // into World::triangle_vertices; unused by quadrics
-  Column<uint32_t> triangle_count;
-  Column<uint32_t> shade_kind;   // ShadeKind, or mixed_kind
-  Column<uint32_t> material;     // row in the table of that kind, of mixed_kind in World::mixes
-  Column<uint32_t> first_light;  // light row of the first triangle, or no_index
-  Column<uint32_t> placement;    // row in World::placements; 0 is the identity: vertices are in world space
-  Column<uint32_t> visibility;   // mask of rays that see it
-  Column<uint32_t> first_key;    // into World::motion_keys; unused by what stands still
-  Column<uint32_t> key_count;    // 0: it stands still; else 2 or more, evenly spaced over the time of the shutter
-  Column<uint32_t> alpha;        // program of TextureSet: the chance that a ray meets it; no_index: 1
+  Column<uint32_t> kind;            // ShapeKind (rectangles are meshes here)
+  Column<uint32_t> first_triangle;  // into World::triangle_vertices, or curve_segments; unused by quadrics
+  Column<uint32_t> triangle_count;  // or of segments
+  Column<uint32_t> shade_kind;      // ShadeKind, or mixed_kind
+  Column<uint32_t> material;        // row in the table of that kind, of mixed_kind in World::mixes
+  Column<uint32_t> first_light;     // light row of the first triangle, or no_index
+  Column<uint32_t> placement;       // row in World::placements; 0 is the identity: vertices are in world space
+  Column<uint32_t> visibility;      // mask of rays that see it
+  Column<uint32_t> first_key;       // into World::motion_keys; unused by what stands still
+  Column<uint32_t> key_count;       // 0: it stands still; else 2 or more, evenly spaced over the time of the shutter
+  Column<uint32_t> alpha;           // program of TextureSet: the chance that a ray meets it; no_index: 1
   size_t size() const { return kind.size(); }
 };
 
-// Placed quadrics and instances: rows of an affine matrix and its inverse, and the shape's own numbers.
+// Placed quadrics, curves and instances: rows of an affine matrix and its inverse, and a quadric's own numbers.
 struct Placement {
   float to_world[12];   // row-major 3x4
   float to_object[12];  // its inverse
-  float radius = 0, inner_radius = 0, height = 0;
-  float normal_sign = 1;  // -1: the outside is the other side
-  float padding[4] = {};
+  float radius = 0, inner_radius = 0;
+  float z_min = 0, z_max = 0;  // a disk's are both its height; a sphere's are infinite where it is not cut
+  float normal_sign = 1;       // -1: the outside is the other side
+  // Counter-clockwise from the x axis, radians; the largest float not above 2 pi: all around.
+  float phi_max = 0, cos_phi_max = 1, sin_phi_max = 0;
 };
 static_assert(sizeof(Placement) == 32 * sizeof(float));
 
@@ -106,8 +108,9 @@ inline constexpr uint32_t media_stack_size = 4, largest_medium = 0xffff;
 enum class LightShape : uint32_t {
   triangle,
   sphere,
-  ellipsoid,
+  ellipsoid,  // and parts of spheres
   disk,
+  cylinder,
   point,  // shapes before this one have an area
   spot,
   goniometric,
@@ -124,21 +127,25 @@ struct LightRow {
   float scale = 0;
   uint32_t two_sided = 0;
   float choice_probability = 0;
-  // triangle: a vertex and two edges. sphere, ellipsoid, disk: centre, and `axes`. point, spot, goniometric,
-  // projection: position.
+  // triangle: a vertex and two edges. sphere, ellipsoid, disk: centre, and `axes`. cylinder: of the circle at z_min.
+  // point, spot, goniometric, projection: position.
   // directional, distant_disk: the direction towards the (centre of the) light.
   float p[3] = {};
-  // triangle: two edges. quadrics: world images of the local x, y, z axes (times the radius).
+  // triangle: two edges. quadrics: world images of the local x, y, z axes (times the radius; a cylinder's z times its
+  // height).
   // spot: 1 - cos of the cone's half angle; 1 / (its difference to that where the falloff starts).
   // distant_disk: 1 - cos of the half angle. projection: half the image's width and height at unit distance.
   float axes[9] = {};
-  float normal[3] = {};  // triangle, disk: unit normal of the emitting side. spot: unit direction of its axis
-  float area = 0;        // m^2
-  // sphere, ellipsoid: rows of the inverse of `axes` as columns. goniometric, projection: world to local.
-  // triangle: uv of the first vertex, and what the others' have more, where it has an image.
+  // triangle, disk: unit normal of the emitting side. spot: unit direction of its axis. sphere, ellipsoid: least and
+  // greatest z on the unit sphere it is the image of, and how much of a turn around z. cylinder: [2] the same.
+  float normal[3] = {};
+  float area = 0;  // m^2
+  // sphere, ellipsoid, cylinder: rows of the inverse of `axes` as columns. disk: [0] how much of a turn. goniometric,
+  // projection: world to local. triangle: uv of the first vertex, and what the others' have more, where it has an
+  // image.
   float inverse[9] = {};
   union {
-    float normal_sign = 1;  // sphere, ellipsoid: -1 emits inwards
+    float normal_sign = 1;  // sphere, ellipsoid, cylinder: -1 emits inwards
     float inner;            // disk: inner radius / radius
     uint32_t mapping;       // goniometric: ImageMapping
   };
@@ -223,6 +230,10 @@ struct World {
   Column<float> normals;               // three per vertex; (0, 0, 0): use the geometric one
   Column<float> uvs;                   // two per vertex; NaN: (0, 0), (1, 0), (1, 1) on every triangle, as in pbrt
   Column<uint32_t> triangle_vertices;  // three per triangle
+  Column<float> curve_points;          // four per point: x y z and half of the width
+  Column<float> curve_normals;         // three per point, and padding; empty where there are no ribbons
+  Column<uint32_t> curve_segments;     // the first of four points of each
+  Column<float> curve_u;               // two per segment: where it begins along its curve's segment, and how long it is
   Column<Placement> placements;
   Column<MotionKey> motion_keys;
   DiffuseColumns diffuse;
@@ -256,15 +267,16 @@ struct World {
   bool needs_tangents = false;  // an anisotropic material is present
   bool has_instances = false;   // some triangles are in their object's space
   bool has_quadrics = false;
+  bool has_curves = false;
   bool has_motion = false;          // some objects move: paths carry their time
   bool has_interiors = false;       // some material is followed: paths carry their media
   bool has_textured_alpha = false;  // some roughness varies
   bool has_bumps = false;
-  bool has_masks = false;  // some object's alpha is not 1
+  bool has_masks = false;         // some object's alpha is not 1
   bool has_portals = false;       // some environment's light depends on where a ray that leaves the scene came from
   bool has_shape_images = false;  // some shape emits an image
   bool has_textures() const { return !textures.programs.empty() || !textures.normal_maps.empty(); }
-  bool needs_uvs() const { return has_textures() || has_shape_images; }
+  bool needs_uvs() const { return has_textures() || has_shape_images || has_curves; }
   uint64_t zero_area_triangles = 0;
   std::unique_ptr<Accelerator, void (*)(Accelerator*)> accelerator{nullptr, nullptr};
 };

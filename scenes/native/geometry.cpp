@@ -1,27 +1,16 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scenes/file_bytes.h"
 #include "scenes/meshes/read_mesh.h"
 #include "scenes/native/components.h"
+#include "scenes/native/rows.h"
 #include "scenes/native/varying.h"
 
 namespace metamer {
 namespace {
-
-// Rows of `n` numbers each.
-template <class V>
-void read_rows(const SceneContext& context, const Json::Value& value, std::string_view what, Column<V>& column) {
-  constexpr size_t n = sizeof(V) / sizeof(float);
-  if (!context.reader.array(value, what, fmt::format("arrays of {} numbers", n))) return;
-  column.resize(value.size());
-  for (Json::ArrayIndex i = 0; i < value.size(); ++i) {
-    std::array<double, n> row{};
-    context.reader.numbers(value[i], fmt::format("{}[{}]", what, i), any_number, row);
-    for (size_t c = 0; c < n; ++c) column[i][static_cast<int>(c)] = static_cast<float>(row[c]);
-  }
-}
 
 // Polygons become fans around their first vertex.
 void read_polygons(const SceneContext& context, const Json::Value& value, size_t vertices, Column<uint32_t>& indices) {
@@ -110,6 +99,11 @@ MeshId read_mesh_reference(SceneContext& context, const Json::Value& value) {
   return no_index;
 }
 
+// Whether some of a shape is left between the heights; else a mistake.
+void check_heights(const SceneContext& context, const Json::Value& value, float z_min, float z_max) {
+  if (!(z_min < z_max)) context.reader.error(value, "'z_min' is not below 'z_max'; expected a height between them");
+}
+
 }  // namespace
 
 void read_meshes(SceneContext& context, const Json::Value& meshes) {
@@ -125,6 +119,7 @@ std::optional<Geometry> read_geometry(SceneContext& context, const Json::Value& 
   const JsonObject object(context.reader, value, "geometry");
   if (!object.is_valid()) return std::nullopt;
   Geometry geometry;
+  constexpr Range angle{0, 360, true};
   const auto length = [&](std::string_view key, const Range& range, float fallback) {
     return object.has(key) ? context.metres(object.number(key, range, 1)) : fallback;
   };
@@ -137,11 +132,26 @@ std::optional<Geometry> read_geometry(SceneContext& context, const Json::Value& 
   } else if (object.type() == "sphere") {
     geometry.kind = ShapeKind::sphere;
     geometry.radius = length("radius", positive, context.metres(1));
+    geometry.z_min = length("z_min", any_number, geometry.z_min);
+    geometry.z_max = length("z_max", any_number, geometry.z_max);
+    geometry.phi_max_deg = object.number_f("phi_max", angle, 360);
+    check_heights(context, value, std::max(geometry.z_min, -geometry.radius),
+                  std::min(geometry.z_max, geometry.radius));
+  } else if (object.type() == "cylinder") {
+    geometry.kind = ShapeKind::cylinder;
+    geometry.radius = length("radius", positive, context.metres(1));
+    geometry.z_min = length("z_min", any_number, context.metres(-1));
+    geometry.z_max = length("z_max", any_number, context.metres(1));
+    geometry.phi_max_deg = object.number_f("phi_max", angle, 360);
+    check_heights(context, value, geometry.z_min, geometry.z_max);
+  } else if (object.type() == "curves") {
+    if (!read_curves_geometry(context, object, geometry)) return std::nullopt;
   } else if (object.type() == "disk") {
     geometry.kind = ShapeKind::disk;
     geometry.radius = length("radius", positive, context.metres(1));
     geometry.height = length("height", any_number, 0);
     geometry.inner_radius = length("inner_radius", not_negative, 0);
+    geometry.phi_max_deg = object.number_f("phi_max", angle, 360);
     if (geometry.inner_radius >= geometry.radius)
       context.reader.error(value, "'inner_radius' is not smaller than 'radius'; expected a ring or a disk");
   } else {

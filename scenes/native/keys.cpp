@@ -5,8 +5,8 @@ namespace {
 
 constexpr bool required = true;
 
-constexpr KeySpec scene[] = {{"$schema"},  {"metamer", required}, {"units"},  {"settings"},          {"spectra"},
-                             {"textures"}, {"materials"},         {"meshes"}, {"entities", required}};
+constexpr KeySpec scene[] = {{"$schema"},  {"metamer", required}, {"units"},  {"settings"}, {"spectra"},
+                             {"textures"}, {"materials"},         {"meshes"}, {"curves"},   {"entities", required}};
 constexpr KeySpec settings[] = {{"size"},    {"samples"}, {"max_depth"},    {"seed"},         {"integrator"},
                                 {"shadows"}, {"filter"},  {"exposure"},     {"sensor_scale"}, {"spectral"},
                                 {"color"},   {"crop"},    {"pixel_jitter"}, {"shutter"}};
@@ -64,9 +64,14 @@ constexpr KeySpec transform[] = {{"matrix"}, {"translate"}, {"rotate"}, {"scale"
 constexpr KeySpec rotate[] = {{"axis", required}, {"degrees", required}};
 constexpr KeySpec look_at[] = {{"from", required}, {"to", required}, {"up"}};
 constexpr KeySpec geometry_mesh[] = {{"type", required}, {"mesh", required}, {"flip_normal"}, {"alpha"}};
-constexpr KeySpec geometry_sphere[] = {{"type", required}, {"radius"}, {"flip_normal"}, {"alpha"}};
-constexpr KeySpec geometry_disk[] = {{"type", required}, {"radius"},      {"inner_radius"},
-                                     {"height"},         {"flip_normal"}, {"alpha"}};
+constexpr KeySpec curves[] = {{"points", required}, {"widths", required}, {"segments"}, {"normals"}};
+constexpr KeySpec geometry_sphere[] = {{"type", required}, {"radius"},      {"z_min"}, {"z_max"},
+                                       {"phi_max"},        {"flip_normal"}, {"alpha"}};
+constexpr KeySpec geometry_disk[] = {{"type", required}, {"radius"},      {"inner_radius"}, {"height"},
+                                     {"phi_max"},        {"flip_normal"}, {"alpha"}};
+constexpr KeySpec geometry_cylinder[] = {{"type", required}, {"radius"},      {"z_min"}, {"z_max"},
+                                         {"phi_max"},        {"flip_normal"}, {"alpha"}};
+constexpr KeySpec geometry_curves[] = {{"type", required}, {"curves", required}, {"kind"}, {"flip_normal"}, {"alpha"}};
 constexpr KeySpec geometry_rectangle[] = {{"type", required}, {"width"}, {"depth"}, {"flip_normal"}, {"alpha"}};
 constexpr KeySpec light_area[] = {{"type", required}, {"radiance"}, {"luminance"}, {"nits"},  {"lumens"}, {"spectrum"},
                                   {"cosine_power"},   {"scale"},    {"two_sided"}, {"power"}, {"image"},  {"space"}};
@@ -128,6 +133,7 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"material.smooth", material_smooth},
                                 {"material.mirror", material_mirror},
                                 {"mesh", mesh},
+                                {"curves", curves},
                                 {"entity", entity},
                                 {"transform", transform},
                                 {"rotate", rotate},
@@ -135,6 +141,8 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"geometry.mesh", geometry_mesh},
                                 {"geometry.sphere", geometry_sphere},
                                 {"geometry.disk", geometry_disk},
+                                {"geometry.cylinder", geometry_cylinder},
+                                {"geometry.curves", geometry_curves},
                                 {"geometry.rectangle", geometry_rectangle},
                                 {"light.area", light_area},
                                 {"light.point", light_point},

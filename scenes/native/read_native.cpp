@@ -24,6 +24,7 @@ void read_scene_object(SceneContext& context, const Json::Value& root) {
   if (const Json::Value* spectra = object.find("spectra")) declare_spectra(context, *spectra);
   if (const Json::Value* textures = object.find("textures")) read_textures(context, *textures);
   if (const Json::Value* meshes = object.find("meshes")) read_meshes(context, *meshes);
+  if (const Json::Value* curves = object.find("curves")) read_curves(context, *curves);
   if (const Json::Value* materials = object.find("materials")) read_materials(context, *materials);
   if (const Json::Value* entities = object.find("entities")) read_entities(context, *entities);
   check_unused_spectra(context);

@@ -44,6 +44,7 @@ struct SceneContext {
   double metres_per_unit = 1;
   std::map<std::string, NamedSpectrum> spectra;
   std::map<std::string, MeshId> meshes;       // of the file's "meshes"
+  std::map<std::string, CurvesId> curves;     // of the file's "curves"
   std::map<std::string, MeshId> mesh_files;   // by resolved path: a file is read once
   std::map<std::string, TextureId> textures;  // those read so far
   std::string texture_being_read;

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
 
 #include "scenes/native/transforms.h"
@@ -29,6 +31,9 @@ JsonText write_geometry(WriteContext& context, const Geometry& geometry) {
   JsonText object = JsonText::object();
   const auto type = [&](std::string_view name) { object.add("type", JsonText::string(name)); };
   const auto length = [&](std::string_view key, float value) { object.add(key, JsonText::number(value)); };
+  const auto turn = [&] {
+    if (geometry.phi_max_deg != 360) length("phi_max", geometry.phi_max_deg);
+  };
   switch (geometry.kind) {
     case ShapeKind::mesh:
       type("mesh");
@@ -37,17 +42,37 @@ JsonText write_geometry(WriteContext& context, const Geometry& geometry) {
     case ShapeKind::sphere:
       type("sphere");
       length("radius", geometry.radius);
+      if (std::isfinite(geometry.z_min)) length("z_min", geometry.z_min);
+      if (std::isfinite(geometry.z_max)) length("z_max", geometry.z_max);
+      turn();
+      break;
+    case ShapeKind::cylinder:
+      type("cylinder");
+      length("radius", geometry.radius);
+      length("z_min", geometry.z_min);
+      length("z_max", geometry.z_max);
+      turn();
       break;
     case ShapeKind::disk:
       type("disk");
       length("radius", geometry.radius);
       if (geometry.inner_radius != 0) length("inner_radius", geometry.inner_radius);
       if (geometry.height != 0) length("height", geometry.height);
+      turn();
       break;
     case ShapeKind::rectangle:
       type("rectangle");
       length("width", geometry.width);
       length("depth", geometry.depth);
+      break;
+    case ShapeKind::flat_curves:
+    case ShapeKind::ribbons:
+    case ShapeKind::round_curves:
+      type("curves");
+      object.add("curves", JsonText::string(context.curves_name(geometry.curves)));
+      object.add("kind", JsonText::string(geometry.kind == ShapeKind::flat_curves ? "flat"
+                                          : geometry.kind == ShapeKind::ribbons   ? "ribbons"
+                                                                                  : "round"));
       break;
   }
   if (geometry.flip_normal != 0) object.add("flip_normal", JsonText::boolean(true));

@@ -55,6 +55,7 @@ JsonText scene_text(WriteContext& context) {
   if (!context.texture_definitions.empty()) root.add("textures", context.texture_definitions);
   if (!materials.empty()) root.add("materials", std::move(materials));
   if (!context.mesh_definitions.empty()) root.add("meshes", context.mesh_definitions);
+  if (!context.curve_definitions.empty()) root.add("curves", context.curve_definitions);
   return root.add("entities", std::move(entities));
 }
 
@@ -110,6 +111,27 @@ std::string WriteContext::mesh_name(MeshId id) {
   const std::string path = folder + "/" + name + ".ply";
   mesh_definitions.add(name, JsonText::object().add("file", JsonText::string(path)));
   return mesh_names[id] = name;
+}
+
+// In place: curves have no files of their own.
+std::string WriteContext::curves_name(CurvesId id) {
+  const auto known = curve_names.find(id);
+  if (known != curve_names.end()) return known->second;
+  const Curves& curves = scene.curves[id];
+  JsonText points = JsonText::array(), widths = JsonText::array(), segments = JsonText::array();
+  JsonText normals = JsonText::array();
+  for (const glm::vec4& p : curves.points) {
+    points.add(JsonText::numbers(std::array{p.x, p.y, p.z}));
+    widths.add(JsonText::number(2 * p.w));
+  }
+  for (const uint32_t segment : curves.segments) segments.add(JsonText::integer(segment));
+  for (const glm::vec3& n : curves.normals) normals.add(JsonText::numbers(std::array{n.x, n.y, n.z}));
+  JsonText object = JsonText::object();
+  object.add("points", points).add("widths", widths).add("segments", segments);
+  if (!normals.empty()) object.add("normals", normals);
+  const std::string name = "curves " + std::to_string(curve_names.size() + 1);
+  curve_definitions.add(name, object);
+  return curve_names[id] = name;
 }
 
 const ImageFile& WriteContext::add_image_file(ImageId id, bool is_copy, bool is_linear) {

@@ -51,6 +51,8 @@ struct WriteContext {
   std::map<MeshId, std::string> mesh_names;  // those that were asked for
   JsonText texture_definitions = JsonText::object().break_lines();
   std::map<TextureId, std::string> texture_names;
+  JsonText curve_definitions = JsonText::object().break_lines();
+  std::map<CurvesId, std::string> curve_names;
   std::vector<MeshFile> meshes;
   std::vector<ImageFile> images;
   std::vector<std::string> mistakes;  // what the format cannot say
@@ -60,6 +62,8 @@ struct WriteContext {
   const ImageFile& texture_image_file(ImageId id);
   const ImageFile& light_image_file(ImageId id);
   const ImageFile& add_image_file(ImageId id, bool is_copy, bool is_linear);
+  // The name of curves in "curves".
+  std::string curves_name(CurvesId id);
   // What stands where the texture is used: {"texture": name}. It goes to the file's "textures".
   JsonText texture(TextureId id);
 };

@@ -117,6 +117,10 @@ class TextureWriter {
       case TextureKind::wrinkled: return pattern("wrinkled");
       case TextureKind::windy: return pattern("windy");
       case TextureKind::marble: return pattern("marble");
+      case TextureKind::square_root:
+        type("square_root");
+        operand("a", texture_.a);
+        return object_;
     }
     if (texture_.is_number != 0) object_.add("number", JsonText::boolean(true));
     return object_;

@@ -48,6 +48,12 @@ struct GraphicsState {
   ParameterPointers attributes[std::size(attribute_targets)];  // into Reader::attribute_values; no name twice
 };
 
+// Whether a shape would become the same under both: what else comes to belong to a shape has its place here.
+inline bool is_shaped_alike(const GraphicsState& a, const GraphicsState& b) {
+  return a.transform == b.transform && a.end_transform == b.end_transform &&
+         a.reverse_orientation == b.reverse_orientation && a.material == b.material;
+}
+
 enum class Block : uint8_t { attribute, transform, object, import };
 
 struct SavedState {
@@ -68,6 +74,15 @@ struct ShapeRecord {
   TransformPair transforms;
   Entity material;
   Source source;
+};
+
+// The curves that the next one may join.
+struct OpenCurves {
+  CurvesId id = no_index;
+  ShapeKind kind = ShapeKind::flat_curves;
+  TextureId alpha = no_index;
+  std::optional<std::string> object;
+  GraphicsState state;
 };
 
 struct Instance {
@@ -96,6 +111,7 @@ struct Reader {
   std::map<std::string, std::vector<ShapeRecord>> objects = {};
   std::optional<std::string> object = {};  // between ObjectBegin and ObjectEnd
   std::vector<Instance> instances = {};
+  std::optional<OpenCurves> open_curves = {};
   std::map<std::string, MeshId> files_of_meshes = {};
   Entity camera = {};
   double exposure_seconds = 1, iso = 100;

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 
+#include "scenes/pbrt/curve_shapes.h"
 #include "scenes/pbrt/matrix.h"
 #include "scenes/pbrt/mesh_shapes.h"
 #include "scenes/pbrt/reader.h"
@@ -23,36 +25,56 @@ struct Shape {
   double area = 0;
 };
 
-// An error if a parameter cuts a piece out of the full shape.
-void require_full(Parameters& parameters, std::string_view name, double full) {
-  const double value = parameters.number(name, full);
-  if (std::abs(value - full) > 1e-5 * std::abs(full)) {
-    parameters.error(
-        name, fmt::format("'{}' is not supported yet: the shape must be full, that is '{}' {}", name, name, full));
-  }
+// Degrees, at most 360; what is beyond counts as that, as in pbrt.
+double read_phi_max(Parameters& parameters) { return std::min(parameters.positive("phimax", 360), 360.0); }
+double radians(double degrees) { return degrees / 180 * std::numbers::pi; }
+
+// 'zmin' and 'zmax' in their order; an error if there is nothing between them.
+struct Heights {
+  double z_min, z_max;
+};
+Heights read_heights(Parameters& parameters, double z_min, double z_max, double limit) {
+  const double a = parameters.number("zmin", z_min), b = parameters.number("zmax", z_max);
+  const Heights heights{std::clamp(std::min(a, b), -limit, limit), std::clamp(std::max(a, b), -limit, limit)};
+  if (!(static_cast<float>(heights.z_min) < static_cast<float>(heights.z_max)))
+    parameters.error("zmin", fmt::format("'zmin' {:g} and 'zmax' {:g} leave nothing of the shape", a, b));
+  return heights;
 }
 
 Shape read_sphere(Parameters& parameters) {
-  const double radius = parameters.positive("radius", 1);
-  require_full(parameters, "zmin", -radius);
-  require_full(parameters, "zmax", radius);
-  require_full(parameters, "phimax", 360);
-  Geometry geometry{.kind = ShapeKind::sphere, .radius = static_cast<float>(radius)};
-  return {geometry, 4 * std::numbers::pi * radius * radius};
+  const double radius = parameters.positive("radius", 1), phi_max = read_phi_max(parameters);
+  const auto [z_min, z_max] = read_heights(parameters, -radius, radius, radius);
+  Geometry geometry{
+      .kind = ShapeKind::sphere, .radius = static_cast<float>(radius), .phi_max_deg = static_cast<float>(phi_max)};
+  if (z_min > -radius) geometry.z_min = static_cast<float>(z_min);
+  if (z_max < radius) geometry.z_max = static_cast<float>(z_max);
+  return {geometry, radians(phi_max) * radius * (z_max - z_min)};
+}
+
+Shape read_cylinder(Parameters& parameters) {
+  const double radius = parameters.positive("radius", 1), phi_max = read_phi_max(parameters);
+  const auto [z_min, z_max] = read_heights(parameters, -1, 1, std::numeric_limits<double>::infinity());
+  const Geometry geometry{.kind = ShapeKind::cylinder,
+                          .radius = static_cast<float>(radius),
+                          .z_min = static_cast<float>(z_min),
+                          .z_max = static_cast<float>(z_max),
+                          .phi_max_deg = static_cast<float>(phi_max)};
+  return {geometry, radians(phi_max) * radius * (z_max - z_min)};
 }
 
 Shape read_disk(Parameters& parameters) {
   const double radius = parameters.positive("radius", 1);
   const double inner = parameters.number_from("innerradius", 0, 0);
   const double height = parameters.number("height", 0);
-  require_full(parameters, "phimax", 360);
+  const double phi_max = read_phi_max(parameters);
   if (inner >= radius)
     parameters.error("innerradius", fmt::format("'innerradius' {} is not below 'radius' {}", inner, radius));
   Geometry geometry{.kind = ShapeKind::disk,
                     .radius = static_cast<float>(radius),
                     .inner_radius = static_cast<float>(inner),
-                    .height = static_cast<float>(height)};
-  return {geometry, std::numbers::pi * (radius * radius - inner * inner)};
+                    .height = static_cast<float>(height),
+                    .phi_max_deg = static_cast<float>(phi_max)};
+  return {geometry, radians(phi_max) / 2 * (radius * radius - inner * inner)};
 }
 
 // In world space, as pbrt keeps its triangles.
@@ -87,20 +109,20 @@ std::optional<Shape> read_mesh_shape(Reader& reader, std::string_view kind, Para
   return shape;
 }
 
-std::optional<Shape> read_geometry(Reader& reader, std::string_view kind, Parameters& parameters) {
+std::optional<Shape> read_geometry(Reader& reader, std::string_view kind, Parameters& parameters, TextureId alpha) {
   if (kind == "sphere") return read_sphere(parameters);
   if (kind == "disk") return read_disk(parameters);
+  if (kind == "cylinder") return read_cylinder(parameters);
+  if (kind == "curve") {
+    const std::optional<Geometry> curves = read_curve(reader, parameters, alpha);
+    return curves ? std::optional<Shape>({*curves, 0}) : std::nullopt;
+  }
   if (kind == "trianglemesh" || kind == "plymesh" || kind == "bilinearmesh" || kind == "loopsubdiv") {
     return read_mesh_shape(reader, kind, parameters);
   }
   parameters.ignore_the_rest();
-  if (std::find(std::begin(shape_kinds), std::end(shape_kinds), kind) == std::end(shape_kinds)) {
-    reader.messages.error(parameters.source(),
-                          fmt::format("there is no shape \"{}\"{}", kind, did_you_mean(kind, shape_kinds)));
-  } else {
-    reader.messages.warning_once("shape " + std::string(kind), parameters.source(),
-                                 fmt::format("shape \"{}\" is not supported yet; it is left out", kind));
-  }
+  reader.messages.error(parameters.source(),
+                        fmt::format("there is no shape \"{}\"{}", kind, did_you_mean(kind, shape_kinds)));
   return std::nullopt;
 }
 
@@ -124,7 +146,7 @@ Light to_light(Parameters& parameters, const AreaLight& area_light, double area)
 
 void read_shape(Reader& reader, std::string_view kind, Parameters& parameters) {
   const TextureId alpha = read_alpha(reader, parameters);
-  std::optional<Shape> shape = read_geometry(reader, kind, parameters);
+  std::optional<Shape> shape = read_geometry(reader, kind, parameters, alpha);
   if (!shape) return;
   shape->geometry.alpha_texture = alpha;
   shape->geometry.flip_normal = reader.state.reverse_orientation ? 1 : 0;
@@ -148,7 +170,12 @@ void read_shape(Reader& reader, std::string_view kind, Parameters& parameters) {
   registry.set(entity, shape->geometry);
   registry.set(entity, parameters.source());
   if (!reader.state.material.is_null()) registry.set(entity, MaterialSlot{reader.state.material});
-  if (reader.state.area_light.on) registry.set(entity, to_light(parameters, reader.state.area_light, shape->area));
+  if (reader.state.area_light.on && is_curves(shape->geometry.kind)) {
+    reader.messages.warning_once("curve light", parameters.source(),
+                                 "curves emit no light, as in pbrt; this AreaLightSource does nothing");
+  } else if (reader.state.area_light.on) {
+    registry.set(entity, to_light(parameters, reader.state.area_light, shape->area));
+  }
 }
 
 }  // namespace metamer::pbrt

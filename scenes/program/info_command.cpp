@@ -60,7 +60,9 @@ Counts count_kinds(const Column<Kind>& column, const std::array<const char*, N>&
 
 void count_geometry(const Scene& scene, SceneInfo& info) {
   const Table<Geometry>& geometry = scene.registry.table<Geometry>();
-  info.shapes = count_kinds<ShapeKind, 4>(geometry.column<&Geometry::kind>(), {"mesh", "sphere", "disk", "rectangle"});
+  info.shapes = count_kinds<ShapeKind, 8>(
+      geometry.column<&Geometry::kind>(),
+      {"mesh", "sphere", "disk", "rectangle", "cylinder", "flat curves", "ribbons", "round curves"});
   std::unordered_set<MeshId> used;
   for (uint32_t row = 0; row < geometry.size(); ++row) {
     const Geometry shape = geometry.get(row);
@@ -76,6 +78,8 @@ size_t scene_bytes(const Scene& scene) {
   size_t bytes = scene.registry.bytes() + scene.spectra.bytes();
   for (const Mesh& mesh : scene.meshes)
     bytes += mesh.positions.bytes() + mesh.normals.bytes() + mesh.uvs.bytes() + mesh.indices.bytes();
+  for (const Curves& curves : scene.curves)
+    bytes += curves.points.bytes() + curves.normals.bytes() + curves.segments.bytes();
   for (const Image& image : scene.images) bytes += image.rgb.capacity() * sizeof(float);
   return bytes;
 }

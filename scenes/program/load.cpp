@@ -91,7 +91,8 @@ size_t world_bytes(const World& world) {
   return bytes_of(o.kind, o.first_triangle, o.triangle_count, o.shade_kind, o.material, o.first_light, o.placement,
                   o.visibility, o.first_key, o.key_count) +
          bytes_of(world.positions, world.normals, world.uvs, world.triangle_vertices, world.placements,
-                  world.motion_keys, world.camera_keys) +
+                  world.motion_keys, world.camera_keys, world.curve_points, world.curve_normals, world.curve_segments,
+                  world.curve_u) +
          coated_bytes(world.smooth_coated) + coated_bytes(world.rough_coated) +
          bytes_of(world.rough.kd, world.rough.ks, world.rough.shininess, world.rough.normalized) +
          bytes_of(world.diffuse.reflectance, world.conductor.eta, world.conductor.kappa, world.conductor.alpha_x,

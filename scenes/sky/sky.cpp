@@ -94,7 +94,10 @@ SkyImage make_sky(const SkySettings& settings) {
   const glm::dvec3 sun = sun_direction(settings);
   const uint32_t height = settings.resolution, width = 2 * height;
   SkyImage sky;
-  sky.image = {"sky", width, height, {}, ImageMapping::latitude_longitude, ColorSpace::rec2020};
+  sky.image.name = "sky";
+  sky.image.width = width;
+  sky.image.height = height;
+  sky.image.color_space = ColorSpace::rec2020;
   sky.image.rgb.resize(size_t{3} * width * height);
   for (uint32_t row = 0; row < height / 2; ++row) {
     const auto angle = [&](double r) { return pi * r / height; };

@@ -23,6 +23,16 @@ SceneBuilder everything(Integrator integrator = Integrator::path) {
   b.emit(b.add(sphere(0.2f), b.diffuse(0.3), moved(0, 1, 0.5)), b.named("A"), 0.1f);
   b.emit(b.add(rectangle(0.5f, 0.5f), b.diffuse(0.3), moved(-1, 1, 0) * turned(90, 1, 0, 0)), b.named("D65"), 0.1f);
   b.emit(b.add(disk(0.3f), b.diffuse(0.3), moved(1, 1, 0)), b.named("D50"), 0.1f, true);
+  Curves fibre;
+  for (const glm::vec4& p :
+       {glm::vec4(-1.5f, -0.8f, 1, 0.05f), {-0.5f, 1, 1, 0.05f}, {0.5f, -1, 1, 0.03f}, {1.5f, 0.6f, 1, 0}}) {
+    fibre.points.push_back(p);
+    fibre.normals.push_back({p.y, 0, 1});
+  }
+  fibre.segments.push_back(0);
+  b.scene.curves.push_back(fibre);
+  b.add({.kind = ShapeKind::round_curves, .curves = 0}, b.diffuse(0.4));
+  b.add({.kind = ShapeKind::ribbons, .curves = 0}, b.diffuse(0.6), moved(0, 0.4, 0) * stretched(1, -0.6, 1));
   b.light(LightKind::point, b.named("E"), 0.05f, moved(0, 0.3, 2));
   b.light(LightKind::environment, b.named("D65"), 0.005f);
   Camera camera = perspective(45);

@@ -113,6 +113,26 @@ TEST(Native, ReadsEveryKey) {
   EXPECT_NEAR(r.scene.spectra.value(r.get<Material>("ice").eta, 550), 1.31, 1e-6);
   EXPECT_NEAR(r.scene.spectra.value(r.get<Material>("ball").reflectance, 500), 0.35, 1e-6);
   EXPECT_EQ(r.scene.location(r.find("ball")).line, 214u);
+
+  const auto bowl = r.get<Geometry>("bowl"), pipe = r.get<Geometry>("pipe"), lock = r.get<Geometry>("lock");
+  EXPECT_EQ(bowl.kind, ShapeKind::sphere);
+  EXPECT_FLOAT_EQ(bowl.z_min, -0.1f);
+  EXPECT_FLOAT_EQ(bowl.z_max, 0.04f);
+  EXPECT_EQ(bowl.phi_max_deg, 270);
+  EXPECT_EQ(r.get<Geometry>("ball").phi_max_deg, 360);
+  EXPECT_EQ(r.get<Geometry>("sector").phi_max_deg, 90);
+  EXPECT_EQ(pipe.kind, ShapeKind::cylinder);
+  EXPECT_FLOAT_EQ(pipe.radius, 0.02f);
+  EXPECT_FLOAT_EQ(pipe.z_min, 0.01f);
+  EXPECT_FLOAT_EQ(pipe.z_max, 0.05f);
+  EXPECT_EQ(pipe.phi_max_deg, 180);
+  EXPECT_EQ(lock.kind, ShapeKind::ribbons);
+  EXPECT_EQ(lock.flip_normal, 1u);
+  ASSERT_EQ(r.scene.curves.size(), 1u);
+  const Curves& strands = r.scene.curves[lock.curves];
+  EXPECT_EQ(strands.points[3], glm::vec4(0.03f, 0.01f, 0, 0.0015f)) << "half of the width, in metres";
+  EXPECT_EQ(strands.segments[1], 3u);
+  EXPECT_EQ(strands.normals[6], glm::vec3(0, 0, 1));
 }
 
 TEST(Native, AppliesOperationsFirstToLastAndUnits) {

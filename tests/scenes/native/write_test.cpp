@@ -28,7 +28,7 @@ TEST(NativeWriter, KnowsEveryFieldThatASceneHas) {
   EXPECT_EQ(field_count<Transform>, 3u);
   EXPECT_EQ(field_count<Motion>, 5u);
   EXPECT_EQ(field_count<Parent>, 1u);
-  EXPECT_EQ(field_count<Geometry>, 9u);
+  EXPECT_EQ(field_count<Geometry>, 13u);
   EXPECT_EQ(field_count<Material>, 24u);
   EXPECT_EQ(field_count<MaterialSlot>, 1u);
   EXPECT_EQ(field_count<Light>, 15u);

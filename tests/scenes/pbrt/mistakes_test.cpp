@@ -111,10 +111,9 @@ INSTANTIATE_TEST_SUITE_P(
     Things, PbrtMistakes,
     testing::ValuesIn(std::vector<Mistake>{
         {"Shape \"spere\" \"float radius\" 1", "2: error: there is no shape \"spere\" (did you mean 'sphere'?)"},
-        {"Shape \"sphere\" \"float zmin\" 0.5",
-         "2: error: Shape \"sphere\": 'zmin' is not supported yet: the shape must be full, that is 'zmin' -1"},
-        {"Shape \"disk\" \"float phimax\" 90",
-         "2: error: Shape \"disk\": 'phimax' is not supported yet: the shape must be full, that is 'phimax' 360"},
+        {"Shape \"sphere\" \"float zmin\" 1",
+         "2: error: Shape \"sphere\": 'zmin' 1 and 'zmax' 1 leave nothing of the shape"},
+        {"Shape \"disk\" \"float phimax\" -90", "2: error: Shape \"disk\": 'phimax' is -90, but must be positive"},
         {"Shape \"disk\" \"float innerradius\" 2", "2: error: Shape \"disk\": 'innerradius' 2 is not below 'radius' 1"},
         {"Shape \"trianglemesh\"", "2: error: Shape \"trianglemesh\": 'P', the positions, is missing"},
         {"Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 1]",

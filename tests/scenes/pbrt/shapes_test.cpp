@@ -103,14 +103,54 @@ Shape "loopsubdiv" "point3 P" [0 0 0 1 0 0 0 1 0] "normal N" [0 0 1 0 0 1 0 0 1]
                      testing::HasSubstr("scene:4: error: Shape \"loopsubdiv\" has no parameter 'normal N'")));
 }
 
-TEST(PbrtShapes, WhatReplacesTheUnsupportedIsSaid) {
-  const ReadScene read = read_good(R"(Shape "cylinder" "float radius" 2 "float zmax" 3
+TEST(PbrtShapes, QuadricsMayBeParts) {
+  const ReadScene read = read_good(R"(Shape "sphere" "float radius" 2 "float zmin" 1 "float zmax" -1.5 "float phimax" 90
+Shape "sphere" "float radius" 2 "float zmax" 1
+Shape "disk" "float phimax" 45
 Shape "cylinder"
-Shape "curve" "point3 P" [0 0 0 1 1 1 2 2 2 3 3 3])");
-  EXPECT_EQ(read.count<Geometry>(), 0u);
-  EXPECT_THAT(read.messages,
-              testing::ElementsAre("scene:2: warning: shape \"cylinder\" is not supported yet; it is left out",
-                                   "scene:4: warning: shape \"curve\" is not supported yet; it is left out"));
+Shape "cylinder" "float radius" 3 "float zmin" 5 "float zmax" 2 "float phimax" 400)");
+  const auto zone = read.get<Geometry>(0), cap = read.get<Geometry>(1), pipe = read.get<Geometry>(4);
+  EXPECT_EQ(zone.z_min, -1.5f) << "in whichever order they are given";
+  EXPECT_EQ(zone.z_max, 1.0f);
+  EXPECT_EQ(zone.phi_max_deg, 90.0f);
+  EXPECT_EQ(cap.z_min, -std::numeric_limits<float>::infinity());
+  EXPECT_EQ(cap.z_max, 1.0f);
+  EXPECT_EQ(read.get<Geometry>(2).phi_max_deg, 45.0f);
+  EXPECT_EQ(read.get<Geometry>(3).kind, ShapeKind::cylinder);
+  EXPECT_EQ(read.get<Geometry>(3).z_min, -1.0f);
+  EXPECT_EQ(read.get<Geometry>(3).z_max, 1.0f);
+  EXPECT_EQ(pipe.radius, 3.0f);
+  EXPECT_EQ(pipe.z_min, 2.0f);
+  EXPECT_EQ(pipe.z_max, 5.0f);
+  EXPECT_EQ(pipe.phi_max_deg, 360.0f);
+  EXPECT_TRUE(read.messages.empty());
+}
+
+// pi times the area that pbrt gives the part in its own space, 1/4 of 2 pi r h, divides it.
+TEST(PbrtShapes, ThePowerOfAPartGoesByItsOwnArea) {
+  const ReadScene read = read_good(R"(AreaLightSource "diffuse" "float power" 30
+Shape "cylinder" "float radius" 2 "float zmin" 0 "float zmax" 3 "float phimax" 90
+Shape "sphere" "float radius" 2 "float zmin" -1 "float zmax" 2 "float phimax" 90
+Shape "disk" "float radius" 4 "float innerradius" 2 "float phimax" 90)");
+  const double area = 3 * 3.14159265358979;
+  const double per_area = double{read.get<Light>(0).scale} * area;
+  for (uint32_t i = 0; i < 3; ++i) EXPECT_NEAR(read.get<Light>(i).scale * area / per_area, 1, 1e-6) << i;
+  const ReadScene whole = read_good(
+      "AreaLightSource \"diffuse\" \"float power\" 30 Shape \"cylinder\" \"float radius\" 2 "
+      "\"float zmin\" 0 \"float zmax\" 3");
+  EXPECT_NEAR(read.get<Light>(0).scale / whole.get<Light>().scale, 4, 1e-5);
+}
+
+TEST(PbrtShapes, PartsOfNothingAreErrors) {
+  const ReadScene read = read_world(R"(Shape "sphere" "float zmin" 3 "float zmax" 2
+Shape "cylinder" "float zmin" 1
+Shape "disk" "float phimax" 0
+Shape "cilinder")");
+  EXPECT_THAT(read.messages, testing::ElementsAre(
+                                 "scene:2: error: Shape \"sphere\": 'zmin' 3 and 'zmax' 2 leave nothing of the shape",
+                                 "scene:3: error: Shape \"cylinder\": 'zmin' 1 and 'zmax' 1 leave nothing of the shape",
+                                 "scene:4: error: Shape \"disk\": 'phimax' is 0, but must be positive",
+                                 "scene:5: error: there is no shape \"cilinder\" (did you mean 'cylinder'?)"));
 }
 
 }  // namespace
