@@ -43,9 +43,6 @@ bool check_coated(const Scene& scene, Entity entity, const Material& material, D
   // Single precision may round a 1 up.
   if (scene.spectra.has_negative(material.reflectance) || scene.spectra.max_value(material.reflectance) > 1 + 1e-6)
     error("'reflectance' is not from 0 to 1 at every wavelength");
-  const Layer& layer = material.layer;
-  if (!(layer.thickness >= 0 && std::isfinite(layer.thickness)))
-    error("'optical_thickness' is not a number of at least 0");
   return diagnostics.error_count() == errors_before;
 }
 

@@ -97,7 +97,7 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
         hn::IfThenElse(place.moves, hn::MulAdd(splat(16 * eps), largest(extent), surface.offset), surface.offset);
   }
 
-  if (world.needs_tangents || world.has_textures()) {
+  if (world.needs_tangents || world.carries_uvs()) {
     VF u[3], v[3];
     for (int k = 0; k < 3; ++k) {
       const VI at = hn::Add(vertex[k], vertex[k]);
@@ -160,7 +160,7 @@ HWY_INLINE Surface quadric_surface(const World& world, const Vec3& origin, const
   const Vec3 along = {hn::Neg(local.y), local.x, zero};
   const MF pole = hn::Eq(hn::Add(hn::Abs(local.x), hn::Abs(local.y)), zero);
   surface.tangent = transform_vector(m, if_then_else(pole, Vec3{one, zero, zero}, along));
-  if (world.has_textures()) quadric_uv(local, radius, gather(&first.inner_radius, base), sphere, surface);
+  if (world.carries_uvs()) quadric_uv(local, radius, gather(&first.inner_radius, base), sphere, surface);
   return surface;
 }
 
@@ -226,7 +226,7 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     store(s.normal, shade.normal, i);
     store(s.shading_normal, shade.shading_normal, i);
     if (world.needs_tangents) store(s.tangent, shade.tangent, i);
-    if (world.has_textures()) {
+    if (world.carries_uvs()) {
       store(s.u, shade.uv[0], i);
       store(s.v, shade.uv[1], i);
     }

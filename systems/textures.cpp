@@ -249,6 +249,7 @@ void textures(const World& world, uint32_t depth, ShadeStream& shade) {
   collect(shade, ShadeKind::diffuse_transmission, world.diffuse_transmission.reflectance_texture, reflectances);
   collect(shade, ShadeKind::smooth_coated, world.smooth_coated.texture, reflectances);
   collect(shade, ShadeKind::rough_coated, world.rough_coated.texture, reflectances);
+  collect(shade, ShadeKind::layered, world.layered.texture, reflectances);
   run(reflectances, shade.reflectance);
   collect(shade, ShadeKind::diffuse_transmission, world.diffuse_transmission.transmittance_texture, transmittances);
   run(transmittances, shade.transmittance);

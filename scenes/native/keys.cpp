@@ -19,10 +19,14 @@ constexpr KeySpec material_diffuse[] = {{"type", required}, {"reflectance", requ
 constexpr KeySpec material_rough[] = {{"type", required}, {"kd"}, {"ks"}, {"shininess"}, {"normalized"}};
 constexpr KeySpec material_coated[] = {{"type", required}, {"reflectance", required}, {"glass"}, {"eta"}, {"roughness"},
                                        {"fresnel"}};
-constexpr KeySpec material_layered[] = {{"type", required}, {"reflectance", required}, {"glass"},    {"eta"},
-                                        {"roughness"},      {"optical_thickness"},     {"max_depth"}};
+constexpr KeySpec material_layered[] = {
+    {"type", required}, {"reflectance"}, {"base_metal"}, {"base_eta"},  {"base_kappa"},
+    {"base_roughness"}, {"glass"},       {"eta"},        {"roughness"}, {"optical_thickness"},
+    {"albedo"},         {"asymmetry"},   {"max_depth"},  {"walks"}};
 constexpr KeySpec material_diffuse_transmission[] = {
     {"type", required}, {"reflectance", required}, {"transmittance", required}};
+constexpr KeySpec material_hair[] = {
+    {"type", required}, {"sigma_a", required}, {"beta_m"}, {"beta_n"}, {"tilt"}, {"eta"}};
 constexpr KeySpec material_mix[] = {{"type", required}, {"first", required}, {"second", required}, {"amount"}};
 constexpr KeySpec material_conductor[] = {{"type", required}, {"metal"},     {"eta"},
                                           {"kappa"},          {"roughness"}, {"fresnel"}};
@@ -72,6 +76,7 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"material.coated", material_coated},
                                 {"material.layered", material_layered},
                                 {"material.diffuse_transmission", material_diffuse_transmission},
+                                {"material.hair", material_hair},
                                 {"material.mix", material_mix},
                                 {"material.conductor", material_conductor},
                                 {"material.dielectric", material_dielectric},

@@ -150,8 +150,8 @@ TEST(PbrtMaterials, WhatReplacesTheUnsupportedIsSaidOncePerKind) {
   const ReadScene read = read_world(
       std::string("Texture \"wood\" \"spectrum\" \"fbm\" Texture \"glass\" \"spectrum\" \"fbm\"\n") +
       "Material \"dielectric\" \"texture eta\" \"glass\"" + sphere +
-      "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere + "Material \"hair\" \"float eumelanin\" 1" +
-      sphere + "Material \"hair\" \"float eumelanin\" 1" + sphere +
+      "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere + "Material \"subsurface\" \"float g\" 1" +
+      sphere + "Material \"subsurface\" \"float g\" 1" + sphere +
       "Material \"diffuse\" \"texture displacement\" \"wood\" \"string normalmap\" \"n.png\"" + sphere);
   EXPECT_TRUE(read.ok);
   EXPECT_THAT(
@@ -159,7 +159,7 @@ TEST(PbrtMaterials, WhatReplacesTheUnsupportedIsSaidOncePerKind) {
       testing::ElementsAre(
           "scene:2: warning: texture \"fbm\" is not supported yet; what it would colour gets its default value",
           "scene:3: warning: textures for 'eta' are not supported yet; it gets its default value",
-          "scene:5: warning: material \"hair\" is not supported yet; it is rendered as diffuse with reflectance 0.5",
+          "scene:5: warning: material \"subsurface\" is not supported; it is rendered as diffuse with reflectance 0.5",
           "scene:7: warning: Material \"diffuse\": 'displacement' is not supported yet; the surface stays as it is",
           "scene:7: warning: Material \"diffuse\": 'normalmap' is not supported yet; the surface stays as it is"));
 }
