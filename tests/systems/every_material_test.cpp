@@ -121,7 +121,7 @@ Answers add_layered(SceneBuilder& b, float alpha_x, float alpha_y) {
   coat.layer.max_depth = 4;
   plane(b, coat);
   Column<float> table;
-  const double width = std::sqrt(double{alpha_x} * double{alpha_y});
+  const double width = alpha_x > 0 ? coat_table_alpha(double{alpha_x}, double{alpha_y}) : 0;
   const CoatRows rows = add_coat_rows({width, false, true, double{0.2f}}, 1.4, 1.7, table);
   const Radiance body = tabulated([&](double nm) {
     const double a = slope_at(nm, 0.2, 0.9), eta = slope_at(nm, 1.7, 1.4);

@@ -79,8 +79,8 @@ TEST(MixedMaterial, OneOfItselfIsAnError) {
   SceneBuilder b(4, 4, 1, 1);
   const Entity other = material(b, b.diffuse(0.5)), broken = b.scene.registry.create(),
                between = b.scene.registry.create();
-  b.scene.registry.set(between, mix(broken, other, 0.5f));
   b.scene.registry.set(broken, mix(other, between, 0.5f));
+  b.scene.registry.set(between, mix(broken, other, 0.5f));
   EXPECT_THAT(messages_of(b, broken), HasSubstr("error: 'broken': it is mixed of itself"));
 }
 
