@@ -41,11 +41,15 @@ constexpr KeySpec material_rough[] = {{"type", required}, {"kd"},           {"ks
 constexpr KeySpec material_coated[] = {
     {"type", required}, {"reflectance", required}, {"glass"},     {"eta"}, {"roughness"},
     {"fresnel"},        {"displacement"},          {"normal_map"}};
-constexpr KeySpec material_layered[] = {{"type", required}, {"reflectance", required}, {"glass"},     {"eta"},
-                                        {"roughness"},      {"optical_thickness"},     {"max_depth"}, {"displacement"},
-                                        {"normal_map"}};
+constexpr KeySpec material_layered[] = {
+    {"type", required}, {"reflectance"}, {"base_metal"},   {"base_eta"},          {"base_kappa"}, {"base_roughness"},
+    {"glass"},          {"eta"},         {"roughness"},    {"optical_thickness"}, {"albedo"},     {"asymmetry"},
+    {"max_depth"},      {"walks"},       {"displacement"}, {"normal_map"}};
 constexpr KeySpec material_diffuse_transmission[] = {
     {"type", required}, {"reflectance", required}, {"transmittance", required}, {"displacement"}, {"normal_map"}};
+constexpr KeySpec material_hair[] = {
+    {"type", required}, {"sigma_a", required}, {"beta_m"}, {"beta_n"}, {"tilt"}, {"eta"},
+    {"displacement"},   {"normal_map"}};
 constexpr KeySpec material_mix[] = {{"type", required}, {"first", required}, {"second", required}, {"amount"}};
 constexpr KeySpec material_conductor[] = {{"type", required}, {"metal"},      {"eta"},
                                           {"kappa"},          {"roughness"},  {"fresnel"},
@@ -127,6 +131,7 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"material.coated", material_coated},
                                 {"material.layered", material_layered},
                                 {"material.diffuse_transmission", material_diffuse_transmission},
+                                {"material.hair", material_hair},
                                 {"material.mix", material_mix},
                                 {"material.conductor", material_conductor},
                                 {"material.dielectric", material_dielectric},

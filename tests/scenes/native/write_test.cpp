@@ -309,7 +309,12 @@ TEST(NativeWriter, MaterialsOfOthersAreKept) {
     MakeNamedMaterial "red" "string type" "diffuse" "rgb reflectance" [0.8 0.1 0.1]
     MakeNamedMaterial "coat" "string type" "coateddiffuse" "float roughness" 0.2 "float thickness" 0.3
     MakeNamedMaterial "both" "string type" "mix" "string materials" ["red" "coat"] "float amount" 0.3
-    NamedMaterial "both" Shape "sphere")");
+    NamedMaterial "both" Shape "sphere" Translate 1 0 0
+    Material "coatedconductor" "float thickness" 0.2 "spectrum conductor.eta" "metal-Au-eta" "float g" 0.4
+      "spectrum conductor.k" "metal-Au-k" "rgb albedo" [0.3 0.2 0.1] "integer nsamples" 3 Shape "sphere"
+    Translate 1 0 0 Material "hair" "float eumelanin" 0.8 "float beta_m" 0.2 "float alpha" 3
+    Shape "curve" "point3 P" [0 -1 0 0.3 0 0 0.4 0.2 0 0.1 1 0] "float width" 0.3
+    Translate 0 0 -3 Shape "cylinder" "float phimax" 200 "float zmin" -0.3 Shape "sphere" "float zmax" 0.2)");
   ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
   ASSERT_NE(tiny_film(read.scene), nullptr);
   expect_converts(read.scene);
