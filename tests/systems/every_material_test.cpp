@@ -387,7 +387,7 @@ TEST(EveryMaterial, ShowsItsAlbedoInAFurnaceAtEveryLevel) {
       b.scene.settings.samples_per_pixel = answer.exact ? 8 : 1024;
       const std::unique_ptr<World> world = b.freeze();
       for (const uint32_t kind : world->objects.shade_kind) missing.erase(kind);
-      SCOPED_TRACE(testing::Message() << row.name << ", " << integrator_name(integrator));
+      SCOPED_TRACE(::testing::Message() << row.name << ", " << integrator_name(integrator));
       expect_answer(*world, answer);
     }
   EXPECT_EQ(missing, std::set<uint32_t>()) << "kinds without a row";
