@@ -37,7 +37,7 @@ enum class ShadeKind : uint32_t {
   interface,  // without optical effect; paths pass it before they are sorted
   miss
 };
-inline constexpr uint32_t shade_kind_count = 14;
+inline constexpr uint32_t shade_kind_count = static_cast<uint32_t>(ShadeKind::miss) + 1;
 // Of objects of several materials: the kind is chosen at every hit, by `sort`.
 inline constexpr uint32_t mixed_kind = shade_kind_count;
 // Rough kinds are lit by light samples, smooth kinds only by what lies in the few directions they answer to. A smooth
