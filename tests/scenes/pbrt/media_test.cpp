@@ -20,7 +20,7 @@ struct MediumRead : ReadScene {
     const SpectrumId white = set.add_white(ColorSpace::srgb);
     const Color3 lit = set.xyz(set.product(id, white).id);
     const double scale = set.luminance(white);
-    return multiply(xyz_to_rgb(ColorSpace::srgb), {lit[0] / scale, lit[1] / scale, lit[2] / scale});
+    return multiply(xyz_to_rgb(ColorSpace::srgb), Color3{lit[0] / scale, lit[1] / scale, lit[2] / scale});
   }
   void expect_rgb(SpectrumId id, double red, double green, double blue) {
     const Color3 got = rgb(id);
