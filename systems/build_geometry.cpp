@@ -95,40 +95,6 @@ bool is_within_reach(const glm::dmat4& to_world, double extent) {
 }
 
 constexpr float no_uv = std::numeric_limits<float>::quiet_NaN();
-// Where the object that is being added is as the shutter opens, and the keys of its motion, if it moves.
-struct Place {
-  glm::dmat4 to_world;
-  std::vector<glm::dmat4> keys;
-  bool moves() const { return !keys.empty(); }
-};
-
-// What emits light stands still: as the lights have been placed.
-Place place_of(Builder& b, Entity entity, const glm::dmat4& to_world) {
-  Place place{to_world, motion_keys(b.scene, entity, b.diagnostics)};
-  if (!place.moves()) return place;
-  if (b.scene.registry.has<Light>(entity)) {
-    b.diagnostics.warning(b.scene.location(entity),
-                          fmt::format("{} emits light and does not move: lights stand as at the start of their motion",
-                                      b.scene.describe(entity)));
-    return {to_world, {}};
-  }
-  place.to_world = place.keys.front();
-  return place;
-}
-
-void add_motion(World& world, const Place& place) {
-  world.objects.first_key.push_back(static_cast<uint32_t>(world.motion_keys.size()));
-  world.objects.key_count.push_back(static_cast<uint32_t>(place.keys.size()));
-  if (place.moves()) world.has_motion = true;
-  for (const glm::dmat4& matrix : place.keys) {
-    MotionKey key;
-    for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 4; ++column)
-        key.to_world[row * 4 + column] = static_cast<float>(matrix[column][row]);
-    world.motion_keys.push_back(key);
-  }
-}
-
 void push_vector(Column<float>& column, const glm::dvec3& v) {
   for (int i = 0; i < 3; ++i) column.push_back(static_cast<float>(v[i]));
 }
@@ -374,7 +340,7 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
     const double size = geometry.kind == ShapeKind::mesh ? b.mesh_extent[geometry.mesh]
                         : is_curves(geometry.kind)       ? extent(scene.curves[geometry.curves])
                                                          : extent(geometry);
-    const Place place = place_of(b, entity, to_world[entity.index]);
+    const Place place = place_of(scene, entity, to_world[entity.index], diagnostics);
     add_motion(world, place);
     const bool reaches = std::all_of(place.keys.begin(), place.keys.end(),
                                      [&](const glm::dmat4& key) { return is_within_reach(key, size); });

@@ -197,4 +197,30 @@ std::vector<glm::dmat4> motion_keys(const Scene& scene, Entity entity, Diagnosti
   return keys;
 }
 
+Place place_of(const Scene& scene, Entity entity, const glm::dmat4& to_world, Diagnostics& diagnostics) {
+  Place place{to_world, motion_keys(scene, entity, diagnostics)};
+  if (!place.moves()) return place;
+  if (scene.registry.has<Light>(entity)) {
+    diagnostics.warning(scene.location(entity),
+                        fmt::format("{} emits light and does not move: lights stand as at the start of their motion",
+                                    scene.describe(entity)));
+    return {to_world, {}};
+  }
+  place.to_world = place.keys.front();
+  return place;
+}
+
+void add_motion(World& world, const Place& place) {
+  world.objects.first_key.push_back(static_cast<uint32_t>(world.motion_keys.size()));
+  world.objects.key_count.push_back(static_cast<uint32_t>(place.keys.size()));
+  if (place.moves()) world.has_motion = true;
+  for (const glm::dmat4& matrix : place.keys) {
+    MotionKey key;
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 4; ++column)
+        key.to_world[row * 4 + column] = static_cast<float>(matrix[column][row]);
+    world.motion_keys.push_back(key);
+  }
+}
+
 }  // namespace metamer

@@ -3,7 +3,7 @@
 #include <glm/mat4x4.hpp>
 #include <vector>
 
-#include "engine/ecs/scene.h"
+#include "engine/ecs/world.h"
 
 namespace metamer {
 
@@ -25,5 +25,16 @@ glm::dmat4 interpolated(const MotionParts& from, const MotionParts& to, double t
 // shutter is open. An error where it would be flattened on its way.
 inline constexpr double motion_tolerance = 1e-4;
 std::vector<glm::dmat4> motion_keys(const Scene& scene, Entity entity, Diagnostics& diagnostics);
+
+// Where an object is as the shutter opens, and the keys of its motion, if it moves.
+struct Place {
+  glm::dmat4 to_world;
+  std::vector<glm::dmat4> keys;
+  bool moves() const { return !keys.empty(); }
+};
+// `to_world` is at the start of its motion: what emits light stands there, with a warning.
+Place place_of(const Scene& scene, Entity entity, const glm::dmat4& to_world, Diagnostics& diagnostics);
+// Of the last object: its columns first_key and key_count, and its keys.
+void add_motion(World& world, const Place& place);
 
 }  // namespace metamer
