@@ -114,26 +114,27 @@ TEST(NativeMistakes, RepeatedKeysAndImpossibleNumbersDoNotHideOthers) {
 }
 
 TEST(NativeMistakes, UnknownKeysNameTheNearest) {
-  EXPECT_EQ(messages_of("{\"metamer\": 1,\n\"setings\":\n\n{}, \"entities\": [\n{\"nme\": \"x\"},\n{\"color\": 1}]}"),
-            "scene.json:2: error: unknown key 'setings' in a scene (did you mean 'settings'?)\n"
-            "scene.json:5: error: unknown key 'nme' in an entity (did you mean 'name'?)\n"
-            "scene.json:6: error: unknown key 'color' in an entity; it may have 'name', 'parent', 'transform', "
-            "'geometry', 'material', 'light', 'camera' or 'visibility'\n");
+  EXPECT_EQ(
+      messages_of("{\"metamer\": 1,\n\"setings\":\n\n{}, \"entities\": [\n{\"nme\": \"x\"},\n{\"color\": 1}]}"),
+      "scene.json:2: error: unknown key 'setings' in a scene (did you mean 'settings'?)\n"
+      "scene.json:5: error: unknown key 'nme' in an entity (did you mean 'name'?)\n"
+      "scene.json:6: error: unknown key 'color' in an entity; it may have 'name', 'parent', 'transform', 'motion', "
+      "'geometry', 'material', 'light', 'camera', 'visibility' or 'media'\n");
   EXPECT_EQ(messages_of_entity("{\"geometry\": {\"type\": \"sphere\", \"radis\": 2}}"),
             "scene.json:3: error: unknown key 'radis' in geometry of type 'sphere' (did you mean 'radius'?)\n");
 }
 
 TEST(NativeMistakes, TypesOfObjects) {
   EXPECT_EQ(messages_of_entity("{\"geometry\": {\"type\": \"shpere\"}}"),
-            "scene.json:3: error: 'type' is the string \"shpere\"; expected 'mesh', 'sphere', 'disk' or 'rectangle' "
+            "scene.json:3: error: 'type' is the string \"shpere\"; expected 'mesh', 'sphere', 'disk', 'cylinder', "
+            "'curves' or 'rectangle' "
             "(did you mean 'sphere'?)\n");
   EXPECT_EQ(messages_of_entity("{\"light\": {}}"),
             "scene.json:3: error: 'light' has no 'type'; expected 'area', 'point', 'spot', 'directional', "
-            "'environment' or 'sky'\n");
-  EXPECT_EQ(
-      messages_of_entity("{\"camera\": \"front\"}"),
-      "scene.json:3: error: 'camera' is the string \"front\"; expected an object with a 'type' of 'perspective' or "
-      "'orthographic'\n");
+            "'environment', 'goniometric', 'projection' or 'sky'\n");
+  EXPECT_EQ(messages_of_entity("{\"camera\": \"front\"}"),
+            "scene.json:3: error: 'camera' is the string \"front\"; expected an object with a 'type' of 'perspective', "
+            "'orthographic' or 'spherical'\n");
 }
 
 TEST(NativeMistakes, NumbersOutOfRange) {
@@ -213,13 +214,13 @@ TEST(NativeMistakes, SpectraOfTheFile) {
 TEST(NativeMistakes, MaterialsThatAreIncomplete) {
   EXPECT_THAT(messages_of_material("{\"type\": \"diffuse\"}"), HasSubstr("lacks the required key 'reflectance'"));
   EXPECT_THAT(messages_of_material("{\"type\": \"conductor\"}"),
-              HasSubstr("scene.json:2: error: expected 'metal' or 'eta'"));
+              HasSubstr("scene.json:2: error: expected 'metal', 'eta' or 'reflectance'"));
   EXPECT_THAT(messages_of_material("{\"type\": \"conductor\", \"eta\": 1}"),
               HasSubstr("lacks the required key 'kappa'"));
   EXPECT_THAT(messages_of_material("{\"type\": \"conductor\", \"metal\": \"Au\", \"kappa\": 1}"),
               HasSubstr("'metal' and 'kappa' exclude each other"));
   EXPECT_THAT(messages_of_material("{\"type\": \"conductor\", \"metal\": \"Gold\"}"),
-              HasSubstr("unknown metal 'Gold'; known are Ag, Al, Au, Cr, Cu, Fe, Ni, Pt, Ti, W"));
+              HasSubstr("unknown metal 'Gold'; known are Ag, Al, Au, Cr, Cu, CuZn, Fe, MgO, Ni, Pt, Ti, TiO2, W"));
   EXPECT_THAT(messages_of_material("{\"type\": \"dielectric\", \"glass\": \"D65\"}"), HasSubstr("unknown glass 'D65'"));
   EXPECT_THAT(messages_of_material("{\"type\": \"dielectric\", \"glass\": \"BK7\", \"fresnel\": \"fast\"}"),
               HasSubstr("expected 'exact' or 'schlick'"));
@@ -304,7 +305,8 @@ TEST(NativeMistakes, MeshesOfTheFile) {
       "scene.json:7: error: expected 'file' or 'positions'\n"
       "scene.json:8: error: cannot read 'none.ply': No such file or directory\n"
       "scene.json:9: error: 'uvs' goes with 'positions' only\n"
-      "scene.json:9: error: 'mesh.stl': unknown kind of mesh; expected a file ending in .ply or .obj\n"
+      "scene.json:9: error: 'mesh.stl': unknown kind of mesh; expected a file ending in .ply or .obj, or these with "
+      ".gz\n"
       "scene.json:10: error: 2 normals for 1 positions; expected one for each, or none\n");
 }
 

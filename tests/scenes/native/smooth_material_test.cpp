@@ -90,7 +90,7 @@ TEST(SmoothMaterial, WrongOnesAreToldSoWithTheirName) {
   EXPECT_THAT(messages_of_material("{\"type\": \"dielectric\", \"eta\": 1.5, \"thin\": true, \"priority\": 2}"),
               HasSubstr("'thin' and 'priority' exclude each other"));
   EXPECT_THAT(messages_of_material("{\"type\": \"dielectric\", \"eta\": 1.5, \"roughness\": -1}"),
-              HasSubstr("'roughness' is the number -1; expected a number from 0 to 1 (in material 'm')"));
+              HasSubstr("'roughness' is the number -1; expected a number of at least 0 (in material 'm')"));
 }
 
 }  // namespace
