@@ -236,30 +236,6 @@ void add_quadric_object(Builder& b, Entity entity, const Geometry& geometry, con
   finish_lights(b, entity);
 }
 
-// The last object's alpha. Of a constant one 0 is not there for any ray, and 1 is no mask.
-void mask_object(Builder& b, TextureId texture) {
-  if (texture == no_index) return;
-  const TextureProgram program = b.world.textures.programs[texture];
-  const TextureOp& first = b.world.textures.ops[program.begin];
-  if (program.end - program.begin == 1 && first.code == TextureOpcode::number) {
-    if (first.number <= 0) b.world.objects.visibility.back() = 0;
-    if (first.number <= 0 || first.number >= 1) return;
-  }
-  b.world.objects.alpha.back() = texture;
-  b.world.has_masks = true;
-}
-
-// How the lights of the last object are found.
-void add_light_finding(World& world) {
-  ObjectColumns& objects = world.objects;
-  const bool is_seen = (objects.visibility.back() & visible_to_bounces) != 0;
-  const LightFinding finding = objects.alpha.back() != no_index ? LightFinding::rays
-                               : is_seen                        ? LightFinding::both
-                                                                : LightFinding::samples;
-  while (world.light_finding.size() < world.lights.size())
-    world.light_finding.push_back(static_cast<uint32_t>(finding));
-}
-
 void add_curves_object(Builder& b, Entity entity, const Geometry& geometry, const Curves& curves, const Place& place) {
   ObjectColumns& objects = b.world.objects;
   if (b.scene.registry.has<Light>(entity)) {
@@ -336,7 +312,7 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
     objects.volume_inside.push_back(sides.inside);
     objects.volume_outside.push_back(sides.outside);
     objects.alpha.push_back(no_index);
-    mask_object(b, geometry.alpha_texture);
+    build_mask(geometry.alpha_texture, world);
     const double size = geometry.kind == ShapeKind::mesh ? b.mesh_extent[geometry.mesh]
                         : is_curves(geometry.kind)       ? extent(scene.curves[geometry.curves])
                                                          : extent(geometry);
@@ -357,7 +333,7 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
       add_curves_object(b, entity, geometry, scene.curves[geometry.curves], place);
     else
       add_quadric_object(b, entity, geometry, place.to_world);
-    add_light_finding(world);
+    build_light_finding(world);
   });
   // Embree reads 16 bytes for the last vertex.
   for (int i = 0; i < 4; ++i) world.positions.push_back(0);

@@ -37,6 +37,11 @@ struct VolumeSides {
 // coefficients, g not between -1 and 1, a slot that names an entity without Medium.
 std::vector<VolumeSides> build_volumes(const Scene& scene, World& world, Diagnostics& diagnostics);
 
+// The alpha of the last object. A constant one of 0 is not there for any ray, one of 1 is no mask.
+void build_mask(TextureId texture, World& world);
+// How the lights of the last object are found.
+void build_light_finding(World& world);
+
 // Objects, vertices, quadrics, and the light rows of emitting shapes.
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
                     std::span<const VolumeSides> volumes, World& world, Diagnostics& diagnostics);
