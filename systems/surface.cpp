@@ -304,7 +304,9 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     store(gather(hits.material, path), shade.material, i);
     if (shade.carries_volumes) store_volumes(world, paths, path, object, shade, i);
     const VU first_light = gather(world.objects.first_light.data(), object);
-    const auto emits = hn::And(live_u, hn::Ne(first_light, splat_u(no_index)));
+    auto emits = hn::And(live_u, hn::Ne(first_light, splat_u(no_index)));
+    if (shade.carries_volumes)
+      emits = hn::AndNot(uint_mask(hn::Eq(gather(hits.depth_left, path), splat(light_is_counted))), emits);
     const VU light = hn::Add(first_light, hn::IfThenZeroElse(uint_mask(quadric), primitive));
     store(hn::IfThenElse(emits, light, splat_u(no_index)), shade.light, i);
   }

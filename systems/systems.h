@@ -63,6 +63,7 @@ void intersect_onward(const World& world, const PathStream& paths, const uint32_
 // is lost. Interfaces are passed. Writes throughput, volume and share of the paths, and their hits. `order` and `shade`
 // are scratch. Returns the number of rays that met more than most_interfaces and end.
 inline constexpr uint32_t most_interfaces = 1024;
+inline constexpr float light_is_counted = -1;  // HitStream::depth_left: `emission` has seen the shape that was hit
 uint32_t volumes(const World& world, uint32_t depth, PathStream& paths, HitStream& hits, uint32_t* order,
                  ShadeStream& shade, Slots& slots, double* embree_seconds);
 

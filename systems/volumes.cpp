@@ -105,6 +105,25 @@ void stretch_kernel(const World& world, const VolumeRays& rays) {
   for (size_t k = 0; k < rays.count; k += lane_count()) stretch_lanes(world, rays, k);
 }
 
+// What the last stretch before the surfaces in `shade` lets through.
+void dim_kernel(const World& world, const HitStream& hits, const PathStream& paths, const uint32_t* order,
+                ShadeStream& shade) {
+  for (size_t k = 0; k < shade.size; k += lane_count()) {
+    const VU ordered = load(order, k);
+    const auto listed = hn::Ne(ordered, splat_u(dead_lane));
+    const VI row = as_index(hn::IfThenElseZero(listed, ordered));
+    VF lambda_nm[4];
+    load(shade.lambda_nm, k, lambda_nm);
+    const VU volume = hn::IfThenElseZero(listed, gather(paths.volume, row));
+    const VolumeCoefficients c = volume_coefficients(world, volume, lambda_nm);
+    const VF metres = hn::Max(hn::Sub(gather(hits.distance, row), gather(hits.passed, row)), hn::Zero(FloatTag()));
+    for (size_t j = 0; j < 4; ++j) {
+      const VF passes = exp(hn::Neg(optical_depth(c.extinction[j], metres)));
+      store(hn::Mul(load(shade.throughput[j], k), passes), shade.throughput[j], k);
+    }
+  }
+}
+
 // Behind the surfaces in `shade`, which are those of rays.order.
 void cross_kernel(const ShadeStream& shade, const VolumeRays& rays) {
   for (size_t k = 0; k < rays.count; k += lane_count()) {
@@ -127,6 +146,7 @@ namespace metamer {
 
 HWY_EXPORT(start_kernel);
 HWY_EXPORT(stretch_kernel);
+HWY_EXPORT(dim_kernel);
 HWY_EXPORT(cross_kernel);
 
 namespace {
@@ -147,24 +167,66 @@ void list_all(uint32_t size, VolumeRays& rays) {
   keep(rays, [](uint32_t) { return true; });
 }
 
+bool is_kind(const World& world, uint32_t object, ShadeKind kind) {
+  return object < scattered && world.objects.shade_kind[object] == static_cast<uint32_t>(kind);
+}
+
+// What the listed rays hit, as a stream of one group.
+void find_surfaces(const World& world, const VolumeRays& rays, const uint32_t* order, uint32_t count,
+                   ShadeStream& shade) {
+  shade.groups = {};
+  const Group all = {0, count};
+  shade.groups[static_cast<size_t>(ShadeKind::interface)] = all;
+  shade.groups[static_cast<size_t>(ShadeKind::miss)] = {all.padded_end(), all.padded_end()};
+  shade.size = all.padded_end();
+  surface(world, rays.paths, rays.hits, order, shade);
+}
+
+// Shapes that shine, seen through what scatters: their light is dimmed, not lost by chance, and then `emission` must
+// not count it again, which HitStream::depth_left tells. A small lamp in fog would be a few bright paths among many
+// dark.
+class DimmedLights {
+ public:
+  DimmedLights(const World& world, const VolumeRays& rays) {
+    if (!rays.scatters || world.lights.empty()) return;
+    for (uint32_t k = 0; k < rays.count; ++k) {
+      const uint32_t path = rays.order[k], object = rays.hits.object[path];
+      const bool shines = object < scattered && world.objects.first_light[object] != no_index;
+      const bool stays = shines && !is_kind(world, object, ShadeKind::interface);
+      if (stays && world.volumes.scatters[rays.paths.volume[path]] != 0) order_[count_++] = path;
+    }
+    std::fill(order_ + count_, order_ + padded_to_lanes(count_), dead_lane);
+  }
+
+  void add(const World& world, const VolumeRays& rays, ShadeStream& shade) const {
+    if (count_ == 0) return;
+    find_surfaces(world, rays, order_, count_, shade);
+    HWY_DYNAMIC_DISPATCH(dim_kernel)(world, rays.hits, rays.paths, order_, shade);
+    if (world.has_interiors) media(world, shade);
+    emission(world, shade, *rays.slots);
+  }
+
+  void mark(HitStream& hits) const {
+    for (uint32_t k = 0; k < count_; ++k) hits.depth_left[order_[k]] = light_is_counted;
+  }
+
+ private:
+  uint32_t order_[batch_capacity + column_lanes], count_ = 0;
+};
+
 // The listed rays up to what they meet, on through all interfaces. `mask`: what they see. Returns how many are given
 // up.
 uint32_t follow(const World& world, uint32_t mask, VolumeRays& rays, ShadeStream& shade, double* embree_seconds) {
-  const auto is_at_interface = [&](uint32_t i) {
-    const uint32_t object = rays.hits.object[i];
-    return object < scattered && world.objects.shade_kind[object] == static_cast<uint32_t>(ShadeKind::interface);
-  };
+  const auto is_at_interface = [&](uint32_t i) { return is_kind(world, rays.hits.object[i], ShadeKind::interface); };
   for (uint32_t passed = 0;; ++passed) {
+    const DimmedLights lights(world, rays);
+    lights.add(world, rays, shade);
     HWY_DYNAMIC_DISPATCH(stretch_kernel)(world, rays);
+    lights.mark(rays.hits);
     keep(rays, is_at_interface);
     if (rays.count == 0) return 0;
     if (passed == most_interfaces) break;
-    shade.groups = {};
-    const Group all = {0, rays.count};
-    shade.groups[static_cast<size_t>(ShadeKind::interface)] = all;
-    shade.groups[static_cast<size_t>(ShadeKind::miss)] = {all.padded_end(), all.padded_end()};
-    shade.size = all.padded_end();
-    surface(world, rays.paths, rays.hits, rays.order, shade);
+    find_surfaces(world, rays, rays.order, rays.count, shade);
     if (rays.slots != nullptr) emission(world, shade, *rays.slots);
     HWY_DYNAMIC_DISPATCH(cross_kernel)(shade, rays);
     intersect_onward(world, rays.paths, rays.order, rays.count, mask, rays.hits, embree_seconds);

@@ -191,6 +191,18 @@ TEST(Volumes, ScatterOnceAsTheIntegralSays) {
       trace_radiances(*b.freeze()), [&](double nm) { return interpolate(expected, nm); }, 0.015);
 }
 
+// What lamps send through them is dimmed, on every path; chance decides about what is scattered only.
+TEST(Volumes, DimWhatIsSeenThroughThemWithoutChance) {
+  SceneBuilder b = beam(16, 0);
+  b.emit(b.add(rectangle(4, 4), b.diffuse(0.5), moved(0, 0, -2)), unit_spectrum, 2);
+  b.separate(b.add(sphere(1), b.interface(), moved(0, 0, 2)), b.medium(b.constant(0.3), zero_spectrum));
+  const Entity haze = b.medium(b.constant(0.1), slope(b, 0.2, 2), 0.5f);
+  b.scene.meshes.push_back(cube_mesh());
+  b.separate(b.add(mesh(0), b.interface(), moved(0, 0, -2) * stretched(6, 6, 3)), haze);
+  const auto expected = [](double nm) { return 2 * std::exp(-0.6 - 1.5 * (0.1 + slope_at(nm, 0.2, 2))); };
+  expect_every_path(trace_radiances(*b.freeze()), expected, 1e-5);
+}
+
 TEST(Volumes, GlowByTheirAbsorption) {
   for (const Integrator integrator : all_levels) {
     SceneBuilder b = beam(16, 0, integrator);
