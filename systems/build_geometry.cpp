@@ -156,8 +156,7 @@ Mesh rectangle_mesh(const Geometry& geometry) {
   return mesh;
 }
 
-// What the lights of the last object, those from its first_light on, have together: their image, and the power that
-// they state.
+// What the lights of the last object, those from its first_light on, have together: their image and their power.
 void finish_lights(Builder& b, Entity entity) {
   Light light = b.scene.registry.get<Light>(entity);
   World& world = b.world;

@@ -6,9 +6,10 @@
 
 namespace metamer {
 
+inline constexpr const char* too_many_light_texels = "the images of all lights have more than 2^29 pixels";
+
 // The row of World::light_images for a light that has an image; nothing where a kernel could not reach its texels any
 // more. Lights with the same image share its texels.
-inline constexpr const char* too_many_light_texels = "the images of all lights have more than 2^29 pixels";
 std::optional<uint32_t> add_light_image(const Scene& scene, const Light& light, World& world);
 
 // A light's portal and, of what is seen through it, the density of directions: of the environment, whose image

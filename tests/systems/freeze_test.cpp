@@ -249,5 +249,26 @@ TEST(Freeze, TheSizeOfTheSceneCountsQuadricsAndInstances) {
   }
 }
 
+// Its directions stay unit vectors, whose density is per solid angle; a mirror stays one.
+TEST(Environment, ScaleMeansNothingAtInfinity) {
+  Image image;
+  image.width = 2;
+  image.height = 1;
+  image.rgb.assign(6, 1.0f);
+  for (const double mirror : {1.0, -1.0}) {
+    const auto placed = [&](const glm::dvec3& scale) {
+      SceneBuilder b(8, 8, 1, 1);
+      b.environment(image, 1, turned(70, 0.3, 0.5, 1) * stretched(mirror * scale.x, scale.y, scale.z));
+      b.look_at({0, 0, 4}, {0, 0, 0}, perspective(45));
+      return b.freeze();
+    };
+    const std::unique_ptr<World> plain = placed({1, 1, 1}), scaled = placed({3, 0.2, 7});
+    for (int i = 0; i < 9; ++i) {
+      EXPECT_NEAR(scaled->environments[0].to_world[i], plain->environments[0].to_world[i], 1e-6);
+      EXPECT_NEAR(scaled->environments[0].to_local[i], plain->environments[0].to_local[i], 1e-6);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace metamer
