@@ -36,9 +36,12 @@ void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
     *column = arena.take<uint32_t>(rows);
   take_all(arena, rows, s.media);
   take_all(arena, rows, s.next_media);
+  take_all(arena, rows, s.volumes);
+  take_all(arena, rows, s.share);
 }
 
-constexpr size_t columns_in_all = 2 * 22 + 5 + (11 * 3 + 6 * 4 + 4 + 9 + 5 + 4) + (6 + 1 + 4 + 2) + (12 + 2) + 1;
+constexpr size_t columns_in_all =
+    2 * 27 + 8 + (11 * 3 + 6 * 4 + 4 + 9 + 5 + 4 + 2 + 4) + (6 + 1 + 4 + 2 + 4 + 1) + (12 + 2) + 1;
 constexpr size_t column_bytes = (sorted_capacity + column_lanes) * sizeof(float) + 2 * column_alignment;
 
 }  // namespace
@@ -49,13 +52,15 @@ Batch::Batch() : arena(columns_in_all * column_bytes) {
   take_paths(arena, rows, paths);
   take_paths(arena, rows, next);
   hits = {arena.take<uint32_t>(rows), arena.take<uint32_t>(rows), arena.take<float>(rows), arena.take<float>(rows),
-          arena.take<uint32_t>(rows)};
+          arena.take<uint32_t>(rows), arena.take<float>(rows),    arena.take<float>(rows), arena.take<float>(rows)};
   take_shade(arena, rows, shade);
   take_all(arena, rows, shadow.origin);
   take_all(arena, rows, shadow.direction);
   shadow.t_far = arena.take<float>(rows);
   take_all(arena, rows, shadow.contribution);
   shadow.slot = arena.take<uint32_t>(rows);
+  take_all(arena, rows, shadow.lambda_nm);
+  shadow.volume = arena.take<uint32_t>(rows);
   shadow.time = arena.take<float>(rows);
   take_all(arena, rows, slots.lambda_nm);
   take_all(arena, rows, slots.inv_pdf_nm);

@@ -2,11 +2,12 @@
 // columns together stay within a core's L2 cache. Nothing here outlives a batch, except the slots, which live
 // until the batch is accumulated.
 //
-// Per path: PathStream 92 bytes, twice (this bounce's and the next one's rays); HitStream 20; ShadeStream 316;
-// ShadowStream 52; Slots 56.
+// Per path: PathStream 112 bytes, twice (this bounce's and the next one's rays); HitStream 32; ShadeStream 340;
+// ShadowStream 72; Slots 56. Columns that a scene has no use for are not touched.
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "engine/simd/column.h"
@@ -15,8 +16,9 @@ namespace metamer {
 
 inline constexpr uint32_t batch_capacity = 2048;  // paths; a multiple of 16
 inline constexpr uint32_t dead_lane = 0xffffffffu;
+inline constexpr uint32_t scattered = 0xfffffffeu;  // HitStream::object: no surface, but a scattering before it
 
-// What a hit's lanes are sorted by: each kind has its own kernel over all its lanes. The last two end a path.
+// What a hit's lanes are sorted by: each kind has its own kernel over all its lanes. The last three end a path.
 enum class ShadeKind : uint32_t {
   diffuse,
   diffuse_transmission,
@@ -28,17 +30,24 @@ enum class ShadeKind : uint32_t {
   smooth_conductor,
   dielectric,
   thin_dielectric,
+  phase,  // scattering in a volume, not at a surface
   absorber,
+  interface,  // without optical effect; paths pass it before they are sorted
   miss
 };
-inline constexpr uint32_t shade_kind_count = 12;
+inline constexpr uint32_t shade_kind_count = 14;
 // Of objects of several materials: the kind is chosen at every hit, by `sort`.
 inline constexpr uint32_t mixed_kind = shade_kind_count;
 // Rough kinds are lit by light samples, smooth kinds only by what lies in the few directions they answer to. A smooth
 // coat does both: its body is rough, its surface mirrors.
-inline constexpr ShadeKind rough_kinds[] = {
-    ShadeKind::diffuse,      ShadeKind::diffuse_transmission, ShadeKind::rough,           ShadeKind::smooth_coated,
-    ShadeKind::rough_coated, ShadeKind::rough_conductor,      ShadeKind::rough_dielectric};
+inline constexpr ShadeKind rough_kinds[] = {ShadeKind::diffuse,
+                                            ShadeKind::diffuse_transmission,
+                                            ShadeKind::rough,
+                                            ShadeKind::smooth_coated,
+                                            ShadeKind::rough_coated,
+                                            ShadeKind::rough_conductor,
+                                            ShadeKind::rough_dielectric,
+                                            ShadeKind::phase};
 inline constexpr ShadeKind smooth_kinds[] = {ShadeKind::smooth_conductor, ShadeKind::dielectric,
                                              ShadeKind::thin_dielectric};
 
@@ -87,6 +96,11 @@ struct PathStream {
   uint32_t* slot;                // its row in Slots
   float* time;                   // 0 to 1 while the shutter is open; only where World::has_motion
   Columns<uint32_t, 2> media;    // what the ray starts inside of (see MediumColumns); only where World::has_interiors
+  uint32_t* volume;              // row of World::volumes that the ray starts in; only where World::has_volumes
+  // Only where World::shares_paths: how likely each wavelength, had it led, would have made the path go as it did, up
+  // to a factor that makes their sum live_wavelengths(). Throughput is by multiple importance over the leads: f /
+  // mean(pdf of each lead). A wavelength that cannot have led here any more has 0.
+  Columns<float, 4> share;
 };
 
 template <class Visit>
@@ -102,18 +116,23 @@ void for_each_column(PathStream& s, const Visit& visit) {
   visit(s.slot);
   visit(s.time);
   for (uint32_t*& column : s.media) visit(column);
+  visit(s.volume);
+  for (float*& column : s.share) visit(column);
 }
 
 // Rows [first, first + count) of one stream to the front of another.
 void copy_columns(PathStream& from, uint32_t first, uint32_t count, PathStream& to);
 
-// Writer: intersect.
+// Writer: intersect; `volumes` for what happens on the way.
 struct HitStream {
   uint32_t* object;     // row of World::objects; no_index: the ray left the scene
   uint32_t* primitive;  // triangle or segment within the object
   float* distance;      // metres; exact for quadrics, Embree's (to be computed again) for triangles
   float* u;             // along a curve's segment, 0 to 1; only of curves
   uint32_t* material;   // row in the table of the kind. Writer: sort
+  float* passed;        // metres up to the last interface that the ray passed
+  float* reach;         // metres that the ray goes at most
+  float* depth_left;    // optical depth that the leading wavelength still goes before it is scattered
 };
 
 // Vertices sorted by kind, one lane each; a dead lane has slot == dead_lane and throughput 0.
@@ -141,7 +160,11 @@ struct ShadeStream {
   bool carries_time = false;
   // Writer: textures, in lanes whose material has one.
   Columns<float, 4> reflectance, transmittance;
-  Columns<float, 2> alpha;  // GGX widths along and across the tangent
+  Columns<float, 2> alpha;       // GGX widths along and across the tangent
+  Columns<uint32_t, 2> volumes;  // on the inside and the outside of the surface, where `carries_volumes`
+  bool carries_volumes = false;
+  Columns<float, 4> share;  // where `carries_shares`; kernels of what light enters know when a wavelength is alone
+  bool carries_shares = false;
   // Writer: light_sample. Lanes without a light sample have radiance 0.
   Columns<float, 3> light_direction;  // unit, from the vertex
   Columns<float, 4> light_radiance;   // already divided by the pdf
@@ -164,6 +187,8 @@ struct ShadowStream {
   float* t_far;
   Columns<float, 4> contribution;  // radiance at the camera if the light is seen
   uint32_t* slot;
+  Columns<float, 4> lambda_nm;  // this and the volume that the ray starts in: only where the shading carries volumes
+  uint32_t* volume;
   float* time;  // where World::has_motion
 };
 
@@ -203,7 +228,7 @@ void for_each_column(NodeStack& s, const Visit& visit) {
 
 struct Batch {
   explicit Batch();
-  size_t bytes() const { return arena.bytes() + nodes.memory.bytes(); }
+  size_t bytes() const { return arena.bytes() + nodes.memory.bytes() + (crossings ? crossings->bytes() : 0); }
   BatchArena arena;
   PathStream paths, next;
   HitStream hits;
@@ -212,6 +237,8 @@ struct Batch {
   Slots slots;
   NodeStack nodes;
   uint32_t* order;  // sorted lane -> path; dead_lane where padding
+  // For shadow rays on their way through interfaces; made when there are any.
+  std::unique_ptr<Batch> crossings;
 };
 
 }  // namespace metamer

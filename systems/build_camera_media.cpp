@@ -46,8 +46,8 @@ void start_probes(const World& world, PathStream& paths) {
     for (size_t j = 0; j < 4; ++j) paths.lambda_nm[j][i] = 550, paths.throughput[j][i] = 1;
     paths.pdf_direction[i] = 0, paths.eta_scale[i] = 1;
     paths.pixel_seed[i] = paths.index[i] = 0, paths.slot[i] = i;
+    paths.media[0][i] = paths.media[1][i] = paths.volume[i] = 0;
     paths.time[i] = 0;
-    paths.media[0][i] = paths.media[1][i] = 0;
   }
 }
 

@@ -50,7 +50,7 @@ void give_rough(World& world) {
 void build_coefficients(World& world) {
   if (world.settings.color == ColorMode::spectral) return;
   RoleCoefficients albedo(world, albedo_coefficients), index(world, index_coefficients);
-  RoleCoefficients light(world, light_coefficients);
+  RoleCoefficients light(world, light_coefficients), factor(world, factor_coefficients);
   albedo.give(world.diffuse.reflectance);
   albedo.give(world.diffuse_transmission.reflectance);
   albedo.give(world.diffuse_transmission.transmittance);
@@ -65,7 +65,11 @@ void build_coefficients(World& world) {
   index.give(world.dielectric.kappa);
   index.give(world.media.eta);
   index.give(world.media.kappa);
+  factor.give(world.volumes.sigma_a);
+  factor.give(world.volumes.sigma_s);
+  light.give(world.volumes.emission);
   for (LightRow& row : world.lights) light.give(row.spectrum);
+  light.give(world.ambient_light);
 }
 
 }  // namespace metamer

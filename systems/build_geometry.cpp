@@ -283,6 +283,17 @@ void mask_object(Builder& b, TextureId texture) {
   b.world.has_masks = true;
 }
 
+// How the lights of the last object are found.
+void add_light_finding(World& world) {
+  ObjectColumns& objects = world.objects;
+  const bool is_seen = (objects.visibility.back() & visible_to_bounces) != 0;
+  const LightFinding finding = objects.alpha.back() != no_index ? LightFinding::rays
+                               : is_seen                        ? LightFinding::both
+                                                                : LightFinding::samples;
+  while (world.light_finding.size() < world.lights.size())
+    world.light_finding.push_back(static_cast<uint32_t>(finding));
+}
+
 void add_curves_object(Builder& b, Entity entity, const Geometry& geometry, const Curves& curves, const Place& place) {
   ObjectColumns& objects = b.world.objects;
   if (b.scene.registry.has<Light>(entity)) {
@@ -327,10 +338,17 @@ void count_users(Builder& b) {
   });
 }
 
+// The last object is an interface: it hides no light, but shadow rays look for it on their way.
+void pass_shadows(World& world) {
+  uint32_t& mask = world.objects.visibility.back();
+  if ((mask & visible_to_shadows) != 0) mask = (mask & ~visible_to_shadows) | visible_to_crossings;
+  world.has_interfaces = world.has_volumes = true;
+}
+
 }  // namespace
 
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
-                    World& world, Diagnostics& diagnostics) {
+                    std::span<const VolumeSides> volumes, World& world, Diagnostics& diagnostics) {
   const Registry& registry = scene.registry;
   Builder b{scene, world, diagnostics, {}, {}, {}, {}, {}};
   world.placements.push_back(make_placement(glm::dmat4(1), Geometry{}));
@@ -347,6 +365,10 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
     objects.material.push_back(materials[entity.index].row);
     objects.first_light.push_back(no_index);
     objects.visibility.push_back(registry.get<Visibility>(entity).mask);
+    if (materials[entity.index].kind == ShadeKind::interface) pass_shadows(world);
+    const VolumeSides sides = entity.index < volumes.size() ? volumes[entity.index] : VolumeSides{};
+    objects.volume_inside.push_back(sides.inside);
+    objects.volume_outside.push_back(sides.outside);
     objects.alpha.push_back(no_index);
     mask_object(b, geometry.alpha_texture);
     const double size = geometry.kind == ShapeKind::mesh ? b.mesh_extent[geometry.mesh]
@@ -369,6 +391,7 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
       add_curves_object(b, entity, geometry, scene.curves[geometry.curves], place);
     else
       add_quadric_object(b, entity, geometry, place.to_world);
+    add_light_finding(world);
   });
   // Embree reads 16 bytes for the last vertex.
   for (int i = 0; i < 4; ++i) world.positions.push_back(0);

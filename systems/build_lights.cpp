@@ -144,6 +144,8 @@ void choose_lights(std::vector<double>& power, World& world) {
       if (power[row] > 0) world.summed_lights.push_back(row);
       power[row] = 0;
     }
+  for (uint32_t row = 0; row < power.size(); ++row)
+    if (world.light_finding[row] == static_cast<uint32_t>(LightFinding::rays)) power[row] = 0;
   const double total = std::accumulate(power.begin(), power.end(), 0.0);
   if (!(total > 0)) return;
   world.light_choice = make_distribution_1d(choice_weights(world, power, total));
@@ -175,6 +177,7 @@ void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, Worl
     const glm::dmat4& matrix = to_world[entity.index];
     world.lights.push_back(abstract_light(matrix, light, image));
     world.image_of_light.push_back(image_row);
+    world.light_finding.push_back(static_cast<uint32_t>(LightFinding::both));
     if (light.kind == LightKind::environment) {
       Environment environment;
       environment.light = row;
@@ -196,6 +199,7 @@ void build_lights(const Scene& scene, std::span<const glm::dmat4> to_world, Worl
     world.lights.clear();
     world.image_of_light.clear();
     world.light_images = LightImages{};
+    world.light_finding.clear();
     world.distant_disks.clear();
     world.environments.clear();
     world.has_portals = world.has_shape_images = false;

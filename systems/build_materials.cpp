@@ -206,6 +206,7 @@ MaterialRow add_material(const Material& material, World& world) {
     case MaterialKind::coated:
     case MaterialKind::layered: return add_coated(material, world);
     case MaterialKind::smooth: return add_smooth(material, world);
+    case MaterialKind::interface: return {ShadeKind::interface, 0};
     case MaterialKind::dielectric:
     case MaterialKind::mix:
     case MaterialKind::hair: break;

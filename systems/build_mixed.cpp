@@ -46,6 +46,8 @@ struct Mixer {
     if (!varies && mix.amount >= 1) return row_of(mix.second);
     MixRow row;
     const MaterialRow parts[2] = {row_of(mix.first), row_of(mix.second)};
+    if (parts[0].kind == ShadeKind::interface || parts[1].kind == ShadeKind::interface)
+      error(entity, "an interface cannot be mixed with other materials");
     for (size_t k = 0; k < 2; ++k) {
       row.kind[k] = static_cast<uint32_t>(parts[k].kind);
       row.row[k] = parts[k].row;

@@ -32,7 +32,7 @@ double luminance_at(const Image& image, ImageMapping mapping, const glm::dvec3& 
   return std::max(luminance[0] * double{rgb[0]} + luminance[1] * double{rgb[1]} + luminance[2] * double{rgb[2]}, 0.0);
 }
 
-// One row of cells: luminance times solid angle, which is pi^2 z / ((1 - x^2) (1 - y^2)) per area of the square.
+// One row of cells: luminance times solid angle, which goes with (1 - x^2) (1 - y^2) / z per area of the square.
 void fill_row(void* context, uint32_t, size_t row) {
   AngleGrid& grid = *static_cast<AngleGrid*>(context);
   const uint32_t lines = grid.side * grid.places;
@@ -43,7 +43,7 @@ void fill_row(void* context, uint32_t, size_t row) {
       const double beta = pi * ((static_cast<double>(row * grid.places + place) + 0.5) / lines - 0.5);
       const double sin_b = portable::sin(beta), cos_b = portable::cos(beta);
       const glm::dvec3 d = glm::normalize(glm::dvec3(sin_a * cos_b, sin_b * cos_a, cos_a * cos_b));
-      const double solid_angle = d.z / ((1 - d.x * d.x) * (1 - d.y * d.y));
+      const double solid_angle = (1 - d.x * d.x) * (1 - d.y * d.y) / d.z;
       weight += solid_angle * (grid.image != nullptr ? luminance_at(*grid.image, grid.mapping, grid.to_image * d) : 1);
     }
   }

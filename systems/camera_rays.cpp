@@ -72,7 +72,7 @@ HWY_INLINE Ray spherical_ray(const CameraRow& camera, const CameraVectors& c, VF
     d = latitude_longitude_direction(u, v, &solid_angle);
   }
   // The images' z axis points up.
-  return {c.origin, normalize(mul_add(c.right, d.x, mul_add(c.down, d.z, c.axis * d.y)))};
+  return {c.origin, normalize(mul_add(c.right, d.x, mul_add(c.axis, d.z, c.down * d.y)))};
 }
 
 // The ray through film coordinate (x, y), y down; lens_u, lens_v in [0, 1) choose the point of the lens.
@@ -95,8 +95,11 @@ HWY_INLINE Ray camera_ray(const CameraRow& camera, const CameraVectors& c, VF x,
   return ray;
 }
 
-// RGB mode: the wavelengths that stand for the channels. Where indices of refraction differ between them the hero goes
-// on alone, so it must be each channel equally often: u in [0, 1) chooses it, the others follow in turn.
+// Whether a path's first wavelength decides for the others.
+bool has_leads(const World& world) { return world.disperses || world.shares_paths; }
+
+// RGB mode: the wavelengths that stand for the channels. Where indices of refraction or free paths differ between them
+// the first leads, so it must be each channel equally often: u in [0, 1) chooses it, the others follow in turn.
 HWY_INLINE void channel_wavelengths(const World& world, VF u, VF lambda_nm[4], VF inv_pdf_nm[4]) {
   const std::array<double, 3>& channels = coefficient_space(world.settings.color).lambda_nm;
   const VF third = splat(1.0f / 3), two_thirds = splat(2.0f / 3);
@@ -104,7 +107,7 @@ HWY_INLINE void channel_wavelengths(const World& world, VF u, VF lambda_nm[4], V
   const auto nm = [&](size_t j) { return splat(static_cast<float>(channels[j % 3])); };
   for (size_t j = 0; j < 3; ++j) {
     const VF turned = hn::IfThenElse(keep, nm(j), hn::IfThenElse(turn_twice, nm(j + 2), nm(j + 1)));
-    lambda_nm[j] = world.disperses ? turned : nm(j);
+    lambda_nm[j] = has_leads(world) ? turned : nm(j);
   }
   lambda_nm[3] = lambda_nm[2];
   for (size_t j = 0; j < 4; ++j) inv_pdf_nm[j] = splat(1.0f);
@@ -142,7 +145,7 @@ void camera_rays_kernel(const World& world, std::span<const RayPacket> packets, 
           world.camera_keys.empty() ? still_camera(world.camera) : moving_camera(world.camera_keys, time);
       const Ray ray = camera_ray(world.camera, camera, film_x, film_y, has_lens, lens_u, lens_v);
       VF rotation, lambda_nm[4], inv_pdf_nm[4];
-      if (is_spectral || world.disperses) sample_2d(key, splat_u(wavelength_dimension), &u, &rotation);
+      if (is_spectral || has_leads(world)) sample_2d(key, splat_u(wavelength_dimension), &u, &rotation);
       if (is_spectral)
         sample_wavelengths(wavelengths, u, rotation, lambda_nm, inv_pdf_nm);
       else
@@ -170,6 +173,9 @@ void camera_rays_kernel(const World& world, std::span<const RayPacket> packets, 
       if (world.has_motion) store(time, paths.time, i);
       if (world.has_interiors)
         for (size_t k = 0; k < 2; ++k) store(splat_u(world.camera_media[k]), paths.media[k], i);
+      if (world.has_volumes) store(splat_u(world.camera_volume), paths.volume, i);
+      if (world.shares_paths)
+        for (size_t j = 0; j < 4; ++j) store(splat(j < live ? 1.0f : 0.0f), paths.share[j], i);
       const auto inside = hn::And(is_within(x, tile.x0, tile.x1), is_within(y, tile.y0, tile.y1));
       const VU pixel =
           hn::Add(hn::Mul(hn::Sub(y, splat_u(tile.y0)), splat_u(tile.width())), hn::Sub(x, splat_u(tile.x0)));

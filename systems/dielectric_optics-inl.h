@@ -66,6 +66,20 @@ HWY_INLINE DielectricOptics dielectric_optics(const World& world, const ShadeStr
   return optics;
 }
 
+// What the leading wavelength is worth where it goes on alone and stands for all that accumulate sums: their number, or
+// where leads differ in likelihood, the inverse of its share (see PathStream).
+HWY_INLINE VF lone_weight(const World& world, const ShadeStream& shade, size_t i) {
+  const VF count = splat(static_cast<float>(live_wavelengths(world.settings)));
+  return shade.carries_shares ? hn::Div(count, load(shade.share[0], i)) : count;
+}
+// No other wavelength can have led there.
+HWY_INLINE void store_lone_share(const World& world, MF alone, ShadeStream& shade, size_t i) {
+  if (!shade.carries_shares) return;
+  const VF count = splat(static_cast<float>(live_wavelengths(world.settings)));
+  store(hn::IfThenElse(alone, count, load(shade.share[0], i)), shade.share[0], i);
+  for (size_t j = 1; j < 4; ++j) store(hn::IfThenZeroElse(alone, load(shade.share[j], i)), shade.share[j], i);
+}
+
 // The factor on eta_scale: eta^2 with eta = n_i / n_o seen from wo, at a refraction.
 HWY_INLINE VF refraction_scale(const DielectricOptics& optics, MF inside, MF transmitted) {
   const VF eta = bsdf_detail::relative_index(optics.eta[0], inside).eta;

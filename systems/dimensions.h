@@ -19,6 +19,7 @@ enum BounceDimension : uint32_t {
   direction_dimension,     // 2D: where in the lobe
   roulette_dimension,      // 1D
   texture_dimension,       // 2D, of the first image of a texture; others have dimensions of their own
+  free_path_dimension,     // 1D: how far the ray goes through volumes before it is scattered
   mix_dimension = 7,       // 1D: which of two materials; mixes within mixes have dimensions of their own
 };
 

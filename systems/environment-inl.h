@@ -105,11 +105,11 @@ HWY_INLINE WindowV portal_window(const Portal& portal, const Vec3& from) {
                           angle_coordinate(hn::Add(q.y, splat(portal.height)), q.z)};
   return {window.x0, window.y0, hn::IfThenElse(before, window.x1, window.x0), window.y1};
 }
-// Area of the square of angles per solid angle, at a direction in the portal's frame: (1 - x^2) (1 - y^2) / (pi^2 z).
+// Area of the square of angles per solid angle, at a direction in the portal's frame: z / (pi^2 (1 - x^2) (1 - y^2)).
 HWY_INLINE VF portal_jacobian(const Vec3& along) {
   const VF one = splat(1.0f);
   const VF product = hn::Mul(hn::NegMulAdd(along.x, along.x, one), hn::NegMulAdd(along.y, along.y, one));
-  return hn::Div(hn::Mul(product, splat(inverse_pi * inverse_pi)), hn::Max(along.z, splat(1e-20f)));
+  return hn::Div(hn::Mul(along.z, splat(inverse_pi * inverse_pi)), hn::Max(product, splat(1e-20f)));
 }
 
 struct EnvironmentSample {

@@ -18,9 +18,12 @@ std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   const std::vector<glm::dmat4> to_world = build_transforms(scene, diagnostics);
   build_textures(scene, *world, diagnostics);
   const std::vector<MaterialRow> materials = build_materials(scene, *world, diagnostics);
-  build_geometry(scene, to_world, materials, *world, diagnostics);
+  const std::vector<VolumeSides> volumes = build_volumes(scene, *world, diagnostics);
+  build_geometry(scene, to_world, materials, volumes, *world, diagnostics);
   build_lights(scene, to_world, *world, diagnostics);
   build_camera(scene, to_world, *world, diagnostics);
+  if (scene.settings.integrator == Integrator::ambient_occlusion)
+    world->ambient_light = world->spectra.add_rgb({1, 1, 1}, RgbKind::illuminant, ColorSpace::srgb).id;
   build_coefficients(*world);
   if (world->zero_area_triangles > 0)
     diagnostics.warning(

@@ -29,9 +29,17 @@ void build_textures(const Scene& scene, World& world, Diagnostics& diagnostics);
 // The row of an image as a normal map; one for all that use it.
 uint32_t add_normal_map(const Image& image, ImageId id, TextureSet& set);
 
+// Rows of World::volumes on both sides of an entity's surface.
+struct VolumeSides {
+  uint32_t inside = keeps_volume, outside = keeps_volume;
+};
+// The media that fill space, their places by entity index, and what the camera is in. Errors: negative or infinite
+// coefficients, g not between -1 and 1, a slot that names an entity without Medium.
+std::vector<VolumeSides> build_volumes(const Scene& scene, World& world, Diagnostics& diagnostics);
+
 // Objects, vertices, quadrics, and the light rows of emitting shapes.
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
-                    World& world, Diagnostics& diagnostics);
+                    std::span<const VolumeSides> volumes, World& world, Diagnostics& diagnostics);
 
 // An environment's rotation and the density of the directions of its image (null: none).
 void build_environment(const Image* image, const glm::dmat4& to_world, Environment& environment);

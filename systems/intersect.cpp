@@ -32,6 +32,9 @@ void start_ray(const World& world, const PathStream& paths, uint32_t i, RTCRayHi
   ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 }
 
+// Away from the surface that the ray has passed by what its distance is rounded by.
+float beyond(float passed) { return passed * (1 + 4 * std::numeric_limits<float>::epsilon()); }
+
 }  // namespace
 
 void intersect_camera(const World& world, const PathStream& paths, HitStream& hits, double* embree_seconds) {
@@ -82,6 +85,25 @@ void intersect_bounce(const World& world, const PathStream& paths, HitStream& hi
       hits.u[begin + k] = rays[k].hit.u;
     }
   }
+}
+
+void intersect_onward(const World& world, const PathStream& paths, const uint32_t* order, uint32_t count, uint32_t mask,
+                      HitStream& hits, double* embree_seconds) {
+  RayContext context(paths.origin, paths.direction, world.has_motion ? paths.time : nullptr);
+  const Clock::time_point start = Clock::now();
+  for (uint32_t k = 0; k < count; ++k) {
+    const uint32_t i = order[k];
+    RTCRayHit ray;
+    start_ray(world, paths, i, ray);
+    ray.ray.tnear = beyond(hits.passed[i]);
+    ray.ray.tfar = hits.reach[i];
+    ray.ray.mask = mask;
+    if (ray.ray.tnear < ray.ray.tfar) rtcIntersect1(world.accelerator->root, &context.embree, &ray);
+    hits.object[i] = object_of(ray.hit.geomID, ray.hit.instID[0]);
+    hits.primitive[i] = ray.hit.primID;
+    hits.distance[i] = ray.ray.tfar;
+  }
+  *embree_seconds += seconds_since(start);
 }
 
 }  // namespace metamer

@@ -246,8 +246,11 @@ HWY_INLINE void store_light_sample(const World& world, const LightFields& light,
   store(sample.direction, shade.light_direction, i);
   store(sample.distance, shade.light_distance, i);
   store(radiance, shade.light_radiance, i);
-  // Without shadows no ray looks for lights: the sample speaks for all of their light.
-  store(world.settings.shadows ? hn::Mul(sample.pdf, probability) : hn::Zero(FloatTag()), shade.light_pdf, i);
+  // Where no ray looks for a light (and none does without shadows) the sample speaks for all of its light.
+  const VU finding = gather(world.light_finding.data(), hn::ShiftRight<5>(light.row));
+  const MF by_rays = float_mask(hn::Ne(finding, splat_u(static_cast<uint32_t>(LightFinding::samples))));
+  const VF pdf = hn::IfThenElseZero(by_rays, hn::Mul(sample.pdf, probability));
+  store(world.settings.shadows ? pdf : hn::Zero(FloatTag()), shade.light_pdf, i);
 }
 
 void light_sample_lanes(const World& world, uint32_t depth, ShadeKind kind, ShadeStream& shade, size_t i) {

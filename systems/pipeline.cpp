@@ -30,8 +30,8 @@ void count_lanes(const ShadeStream& shade, uint32_t paths, Counters& counters) {
   counters.live_lanes += paths;
 }
 
-// What the rays of the batch meet, and the light they ran into.
-void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, Counters& counters) {
+// What the rays of the batch meet.
+void find_surfaces(const World& world, uint32_t depth, Batch& batch, StageClock& clock, Counters& counters) {
   PathStream& paths = batch.paths;
   if (depth == 0) {
     intersect_camera(world, paths, batch.hits, &counters.embree_seconds);
@@ -42,6 +42,10 @@ void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, C
   }
   clock.charge(SystemId::intersect);
   ShadeStream& shade = batch.shade;
+  if (world.has_volumes)
+    counters.lost_rays +=
+        volumes(world, depth, paths, batch.hits, batch.order, shade, batch.slots, &counters.embree_seconds);
+  clock.charge(SystemId::volumes);
   sort_hits(world, depth, paths, batch.hits, batch.order, shade.groups);
   shade.size = shade.groups.back().padded_end();
   count_lanes(shade, paths.size, counters);
@@ -50,6 +54,12 @@ void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, C
   bump(world, shade);
   textures(world, depth, shade);
   clock.charge(SystemId::surface);
+}
+
+// And the light they ran into.
+void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, Counters& counters) {
+  find_surfaces(world, depth, batch, clock, counters);
+  ShadeStream& shade = batch.shade;
   if (world.has_interiors) media(world, shade);
   clock.charge(SystemId::media);
   emission(world, shade, batch.slots);
@@ -61,7 +71,14 @@ void weigh_lights(const World& world, const ShadeWork& work, Batch& batch, Stage
   batch.shadow.size = 0;
   shade_rough_kinds(world, work, batch.shade, batch.shadow);
   clock.charge(SystemId::shade);
-  shadow(world, batch.shadow, batch.slots, &counters.embree_seconds);
+  if (world.has_volumes) {
+    if (!batch.crossings) batch.crossings = std::make_unique<Batch>();
+    occlude(world, batch.shadow, &counters.embree_seconds);
+    counters.lost_rays += transmit(world, batch.shadow, *batch.crossings, &counters.embree_seconds);
+    add_light(batch.shadow, batch.slots);
+  } else {
+    shadow(world, batch.shadow, batch.slots, &counters.embree_seconds);
+  }
   if (world.settings.shadows) counters.shadow_rays += batch.shadow.size;
   clock.charge(SystemId::shadow);
 }
@@ -151,6 +168,7 @@ void shade_rough_kinds(const World& world, const ShadeWork& work, ShadeStream& s
   shade_rough_coated(world, work, shade, shadow);
   shade_rough_conductor(world, work, shade, shadow);
   shade_rough_dielectric(world, work, shade, shadow);
+  shade_phase(world, work, shade, shadow);
 }
 
 void trace_path(const World& world, Batch& batch, Counters& counters) {
@@ -167,6 +185,17 @@ void trace_local(const World& world, Batch& batch, Counters& counters) {
   if (world.settings.max_depth > 0) gather_direct_light(world, 0, batch, clock, counters);
 }
 
+void trace_ambient_occlusion(const World& world, Batch& batch, Counters& counters) {
+  StageClock clock(counters);
+  find_surfaces(world, 0, batch, clock, counters);
+  batch.shadow.size = 0;
+  ambient_occlusion(world, batch.shade, batch.shadow);
+  clock.charge(SystemId::shade);
+  shadow(world, batch.shadow, batch.slots, &counters.embree_seconds);
+  counters.shadow_rays += batch.shadow.size;
+  clock.charge(SystemId::shadow);
+}
+
 void trace_recursive(const World& world, uint32_t depth, Batch& batch, Counters& counters) {
   StageClock clock(counters);
   meet(world, depth, batch, clock, counters);
@@ -180,6 +209,7 @@ void trace_rays(const World& world, uint32_t depth, Batch& batch, Counters& coun
     case Integrator::local: trace_local(world, batch, counters); break;
     case Integrator::recursive: trace_recursive(world, depth, batch, counters); break;
     case Integrator::path: trace_path(world, batch, counters); break;
+    case Integrator::ambient_occlusion: trace_ambient_occlusion(world, batch, counters); break;
   }
   counters.lost_media += std::exchange(batch.shade.lost_media, 0);
 }
@@ -201,6 +231,7 @@ void Counters::add(const Counters& other) {
   live_lanes += other.live_lanes;
   invalid_samples += other.invalid_samples;
   lost_media += other.lost_media;
+  lost_rays += other.lost_rays;
 }
 
 void trace_tile(const World& world, const TileRect& tile, uint32_t sample_begin, uint32_t sample_end, Batch& batch,

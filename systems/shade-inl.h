@@ -39,6 +39,12 @@ HWY_INLINE Vec3 ray_origin(const ShadeStream& shade, size_t i, const Vec3& direc
   return mul_add(normal, offset, load(shade.position, i));
 }
 
+// What a ray in `direction` is in: the volume of that side of the surface.
+HWY_INLINE VU volume_towards(const ShadeStream& shade, size_t i, const Vec3& direction) {
+  const MF outwards = hn::Gt(dot(direction, load(shade.normal, i)), hn::Zero(FloatTag()));
+  return hn::IfThenElse(uint_mask(outwards), load(shade.volumes[1], i), load(shade.volumes[0], i));
+}
+
 // The light sample's share against the BSDF's chance to have found the light (power heuristic; lights of pdf 0 it
 // cannot find).
 HWY_INLINE VF light_sample_weight(const ShadeStream& shade, size_t i, VF pdf_bsdf) {
@@ -64,8 +70,7 @@ HWY_INLINE void append_weighted_shadow_rays(const ShadeStream& shade, size_t i, 
   const MF near = hn::Lt(distance, hn::Inf(FloatTag()));
   direction = if_then_else(near, to_light * hn::Div(one, length), direction);
   distance = hn::IfThenElse(near, length, distance);
-  // Ends short of the light by as much as float leaves uncertain about where it is.
-  const VF t_far = hn::Mul(distance, splat(0.9999f));
+  const VF t_far = hn::Mul(distance, splat(shadow_ray_share));
   // Throughput is 0 in dead lanes.
   const MF lit = hn::And(is_live(load(shade.slot, i)), hn::Gt(max_of(contribution), zero));
   const MF counts = hn::And(lit, hn::And(is_traceable(origin, direction), hn::Gt(t_far, zero)));
@@ -74,6 +79,12 @@ HWY_INLINE void append_weighted_shadow_rays(const ShadeStream& shade, size_t i, 
   append(counts, t_far, shadow.t_far, shadow.size);
   append(counts, contribution, shadow.contribution, shadow.size);
   append(counts, load(shade.slot, i), shadow.slot, shadow.size);
+  if (shade.carries_volumes) {
+    VF lambda_nm[4];
+    load(shade.lambda_nm, i, lambda_nm);
+    append(counts, lambda_nm, shadow.lambda_nm, shadow.size);
+    append(counts, volume_towards(shade, i, direction), shadow.volume, shadow.size);
+  }
   if (shade.carries_time) append(counts, load(shade.time, i), shadow.time, shadow.size);
   shadow.size += static_cast<uint32_t>(hn::CountTrue(FloatTag(), counts));
 }
@@ -134,6 +145,9 @@ HWY_INLINE void append_ray(MF mask, const ShadeStream& shade, size_t i, const Ne
   if (shade.carries_time) append(mask, load(shade.time, i), next.time, at);
   if (shade.carries_media)
     for (size_t k = 0; k < 2; ++k) append(mask, load(shade.next_media[k], i), next.media[k], at);
+  if (shade.carries_volumes) append(mask, volume_towards(shade, i, ray.direction), next.volume, at);
+  if (shade.carries_shares)
+    for (size_t j = 0; j < 4; ++j) append(mask, load(shade.share[j], i), next.share[j], at);
   next.size += static_cast<uint32_t>(hn::CountTrue(FloatTag(), mask));
 }
 

@@ -10,7 +10,6 @@ namespace {
 
 void shade_dielectric_kernel(const World& world, uint32_t depth, Branch branch, ShadeStream& shade) {
   const VF zero = hn::Zero(FloatTag()), one = splat(1.0f);
-  const VF hero_weight = splat(static_cast<float>(live_wavelengths(world.settings)));
   const Group& group = group_of(shade, ShadeKind::dielectric);
   for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
     MediaCrossing crossing;
@@ -29,9 +28,10 @@ void shade_dielectric_kernel(const World& world, uint32_t depth, Branch branch, 
     const Vec3 wo = to_local(frame, load(shade.wo, i));
     const VF u = branch_number(shade, i, depth, branch);
     DielectricSample next = sample_dielectric(wo, optics, u);
-    // Drawn, the hero stands for all wavelengths that accumulate sums.
     const MF stands_alone = branch == Branch::drawn ? next.terminate_secondary : hn::Lt(one, zero);
-    next.weight[0] = hn::IfThenElse(stands_alone, hn::Mul(next.weight[0], hero_weight), next.weight[0]);
+    next.weight[0] =
+        hn::IfThenElse(stands_alone, hn::Mul(next.weight[0], lone_weight(world, shade, i)), next.weight[0]);
+    store_lone_share(world, stands_alone, shade, i);
     keep_branch(branch, disperses, next.transmitted, next.probability, next.weight);
     store_next(frame, next.wi, next.weight, zero, shade, i);
     if (world.has_interiors) store_next_media(crossing, load(shade.next_direction, i), shade, i);

@@ -24,7 +24,6 @@ HWY_INLINE void attenuate_light(const World& world, const ShadeStream& shade, si
 
 void shade_rough_dielectric_kernel(const World& world, const ShadeWork& work, ShadeStream& shade,
                                    ShadowStream& shadow) {
-  const VF hero_weight = splat(static_cast<float>(live_wavelengths(world.settings)));
   const Group& group = group_of(shade, ShadeKind::rough_dielectric);
   for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
     const VI row = material_row(shade, i);
@@ -46,8 +45,9 @@ void shade_rough_dielectric_kernel(const World& world, const ShadeWork& work, Sh
     const VF choice = sample_1d(key, splat_u(bounce_dimension(work.depth, lobe_dimension)));
     sample_2d(key, splat_u(bounce_dimension(work.depth, direction_dimension)), &u, &v);
     RoughDielectricSample next = sample_rough_dielectric(lobe, optics, choice, u, v);
-    // The hero stands for all wavelengths that accumulate sums.
-    next.weight[0] = hn::IfThenElse(next.terminate_secondary, hn::Mul(next.weight[0], hero_weight), next.weight[0]);
+    next.weight[0] =
+        hn::IfThenElse(next.terminate_secondary, hn::Mul(next.weight[0], lone_weight(world, shade, i)), next.weight[0]);
+    store_lone_share(world, next.terminate_secondary, shade, i);
     store_next(frame, next.wi, next.weight, next.pdf, shade, i);
     if (world.has_interiors) store_next_media(crossing, load(shade.next_direction, i), shade, i);
     store(refraction_scale(optics, sign_bit_set(lobe.side), next.transmitted), shade.next_eta_scale, i);

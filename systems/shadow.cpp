@@ -28,13 +28,9 @@ void add_contribution(const ShadowStream& shadow, uint32_t i, Slots& slots) {
   for (size_t j = 0; j < 4; ++j) slots.radiance[j][slot] += shadow.contribution[j][i];
 }
 
-}  // namespace
-
-void shadow(const World& world, const ShadowStream& shadow, Slots& slots, double* embree_seconds) {
-  if (!world.settings.shadows) {
-    for (uint32_t i = 0; i < shadow.size; ++i) add_contribution(shadow, i, slots);
-    return;
-  }
+// Calls done(ray, is_occluded) for every ray.
+template <class Done>
+void test_occlusion(const World& world, const ShadowStream& shadow, double* embree_seconds, const Done& done) {
   using Clock = std::chrono::steady_clock;
   RayContext context(shadow.origin, shadow.direction, world.has_motion ? shadow.time : nullptr);
   RTCRay rays[chunk];
@@ -44,9 +40,32 @@ void shadow(const World& world, const ShadowStream& shadow, Slots& slots, double
     const Clock::time_point start = Clock::now();
     for (uint32_t k = 0; k < count; ++k) rtcOccluded1(world.accelerator->root, &context.embree, &rays[k]);
     *embree_seconds += std::chrono::duration<double>(Clock::now() - start).count();
-    for (uint32_t k = 0; k < count; ++k)
-      if (!(rays[k].tfar < 0)) add_contribution(shadow, begin + k, slots);  // below 0: Embree's word for occluded
+    for (uint32_t k = 0; k < count; ++k) done(begin + k, rays[k].tfar < 0);  // Embree's word for occluded
   }
+}
+
+}  // namespace
+
+void shadow(const World& world, const ShadowStream& shadow, Slots& slots, double* embree_seconds) {
+  if (!world.settings.shadows) {
+    for (uint32_t i = 0; i < shadow.size; ++i) add_contribution(shadow, i, slots);
+    return;
+  }
+  test_occlusion(world, shadow, embree_seconds, [&](uint32_t i, bool is_occluded) {
+    if (!is_occluded) add_contribution(shadow, i, slots);
+  });
+}
+
+void occlude(const World& world, ShadowStream& shadow, double* embree_seconds) {
+  if (!world.settings.shadows) return;
+  test_occlusion(world, shadow, embree_seconds, [&](uint32_t i, bool is_occluded) {
+    if (is_occluded) shadow.slot[i] = dead_lane;
+  });
+}
+
+void add_light(const ShadowStream& shadow, Slots& slots) {
+  for (uint32_t i = 0; i < shadow.size; ++i)
+    if (shadow.slot[i] != dead_lane) add_contribution(shadow, i, slots);
 }
 
 }  // namespace metamer

@@ -41,14 +41,16 @@ uint32_t choose_mixed(const World& world, uint32_t depth, const PathStream& path
 void sort_hits(const World& world, uint32_t depth, const PathStream& paths, HitStream& hits, uint32_t* order,
                Groups& groups) {
   const uint32_t size = paths.size;
-  constexpr uint32_t miss = static_cast<uint32_t>(ShadeKind::miss);
+  constexpr uint32_t miss = static_cast<uint32_t>(ShadeKind::miss), phase = static_cast<uint32_t>(ShadeKind::phase);
   const uint32_t* kind_of_object = world.objects.shade_kind.data();
   uint8_t kinds[batch_capacity];
   uint32_t counts[shade_kind_count] = {};
   for (uint32_t i = 0; i < size; ++i) {
     const uint32_t object = hits.object[i];
     uint32_t kind = miss;
-    if (object != no_index) {
+    if (object == scattered) {
+      kind = phase;
+    } else if (object != no_index) {
       kind = kind_of_object[object];
       hits.material[i] = world.objects.material[object];
       if (kind == mixed_kind) kind = choose_mixed(world, depth, paths, hits, i, &hits.material[i]);

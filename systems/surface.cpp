@@ -186,6 +186,33 @@ HWY_INLINE Surface quadric_surface(const World& world, const Vec3& origin, const
   return surface;
 }
 
+// A scattering in a volume: there is no surface, so the normal is any direction and rays start at the point itself.
+HWY_INLINE void store_scattering(const PathStream& paths, const HitStream& hits, VI path, ShadeStream& shade,
+                                 size_t i) {
+  const VF distance = gather(hits.distance, path);
+  const Vec3 direction = gather(paths.direction, path);
+  store(mul_add(direction, distance, gather(paths.origin, path)), shade.position, i);
+  store(-direction, shade.normal, i);
+  store(-direction, shade.shading_normal, i);
+  store(hn::Zero(FloatTag()), shade.offset, i);
+  store(distance, shade.distance, i);
+  const VU volume = gather(paths.volume, path);
+  store(volume, shade.material, i);
+  store(splat_u(no_index), shade.light, i);
+  for (uint32_t* side : shade.volumes) store(volume, side, i);
+}
+
+// What the ray is in behind the surface, on either side of it.
+HWY_INLINE void store_volumes(const World& world, const PathStream& paths, VI path, VI object, ShadeStream& shade,
+                              size_t i) {
+  const VU before = gather(paths.volume, path);
+  const VU inside = gather(world.objects.volume_inside.data(), object);
+  const VU outside = gather(world.objects.volume_outside.data(), object);
+  const auto kept = hn::Eq(inside, splat_u(keeps_volume));
+  store(hn::IfThenElse(kept, before, inside), shade.volumes[0], i);
+  store(hn::IfThenElse(kept, before, outside), shade.volumes[1], i);
+}
+
 // What goes along with the path whatever it met.
 HWY_INLINE void carry(const PathStream& paths, VI path, MF live, ShadeStream& shade, size_t i) {
   store(-gather(paths.direction, path), shade.wo, i);
@@ -199,14 +226,19 @@ HWY_INLINE void carry(const PathStream& paths, VI path, MF live, ShadeStream& sh
   store(gather(paths.index, path), shade.index, i);
   store(hn::IfThenElse(uint_mask(live), gather(paths.slot, path), splat_u(dead_lane)), shade.slot, i);
   if (shade.carries_time) store(gather(paths.time, path), shade.time, i);
-  if (!shade.carries_media) return;
-  for (size_t k = 0; k < 2; ++k) store(gather(paths.media[k], path), shade.media[k], i);
+  if (shade.carries_media)
+    for (size_t k = 0; k < 2; ++k) store(gather(paths.media[k], path), shade.media[k], i);
+  if (shade.carries_shares)
+    for (size_t j = 0; j < 4; ++j) store(gather(paths.share[j], path), shade.share[j], i);
 }
 
 void surface_kernel(const World& world, const PathStream& paths, const HitStream& hits, const uint32_t* order,
                     ShadeStream& shade) {
   const size_t step = lane_count();
   shade.carries_media = world.has_interiors;
+  shade.carries_volumes = world.has_volumes;
+  shade.carries_shares = world.shares_paths;
+  const Group& phase = shade.groups[static_cast<size_t>(ShadeKind::phase)];
   shade.carries_time = world.has_motion;
   const uint32_t miss_begin = shade.groups[static_cast<size_t>(ShadeKind::miss)].begin;
   for (size_t i = 0; i < shade.size; i += step) {
@@ -218,6 +250,10 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     carry(paths, path, live, shade, i);
     if (i >= miss_begin) {
       if (world.has_portals) store(gather(paths.origin, path), shade.position, i);
+      continue;
+    }
+    if (i >= phase.begin && i < phase.padded_end()) {
+      store_scattering(paths, hits, path, shade, i);
       continue;
     }
     const VU met = gather(hits.object, path);
@@ -266,6 +302,7 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
     const Vec3 travelled = s.position - origin;
     store(hn::Sqrt(dot(travelled, travelled)), shade.distance, i);
     store(gather(hits.material, path), shade.material, i);
+    if (shade.carries_volumes) store_volumes(world, paths, path, object, shade, i);
     const VU first_light = gather(world.objects.first_light.data(), object);
     const auto emits = hn::And(live_u, hn::Ne(first_light, splat_u(no_index)));
     const VU light = hn::Add(first_light, hn::IfThenZeroElse(uint_mask(quadric), primitive));

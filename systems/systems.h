@@ -21,6 +21,7 @@ struct RayPacket {
 enum class SystemId : uint32_t {
   camera_rays,
   intersect,
+  volumes,
   sort,
   surface,
   media,
@@ -32,7 +33,7 @@ enum class SystemId : uint32_t {
   nodes,
   accumulate
 };
-inline constexpr size_t system_count = 12;
+inline constexpr size_t system_count = 13;
 struct Counters {
   double seconds[system_count] = {};
   double embree_seconds = 0;
@@ -40,6 +41,7 @@ struct Counters {
   uint64_t lanes = 0, live_lanes = 0;  // of the shading streams
   uint64_t invalid_samples = 0;
   uint64_t lost_media = 0;  // times that a path was inside of more than it can remember
+  uint64_t lost_rays = 0;   // rays that met more interfaces than they may
   void add(const Counters& other);
 };
 
@@ -51,6 +53,18 @@ void camera_rays(const World& world, std::span<const RayPacket> packets, const T
 // The first object each ray meets. Camera rays go as packets of sixteen, others one by one.
 void intersect_camera(const World& world, const PathStream& paths, HitStream& hits, double* embree_seconds);
 void intersect_bounce(const World& world, const PathStream& paths, HitStream& hits, double* embree_seconds);
+
+// The same of rays order[0..count) that passed a surface: from `passed` to `reach`, of objects that `mask` sees.
+void intersect_onward(const World& world, const PathStream& paths, const uint32_t* order, uint32_t count, uint32_t mask,
+                      HitStream& hits, double* embree_seconds);
+
+// Where the world has volumes: what happens to rays before they meet a surface. They are absorbed and gather what
+// glows; for `path` they are scattered, which turns the hit into a vertex of ShadeKind::phase, else what is scattered
+// is lost. Interfaces are passed. Writes throughput, volume and share of the paths, and their hits. `order` and `shade`
+// are scratch. Returns the number of rays that met more than most_interfaces and end.
+inline constexpr uint32_t most_interfaces = 1024;
+uint32_t volumes(const World& world, uint32_t depth, PathStream& paths, HitStream& hits, uint32_t* order,
+                 ShadeStream& shade, Slots& slots, double* embree_seconds);
 
 // Chooses the material of hits on mixed ones and sorts by kind: order[lane] is the path, dead_lane in the padding
 // between groups. Writes the hits' material.
@@ -110,6 +124,8 @@ void shade_smooth_coated(const World& world, const ShadeWork& work, ShadeStream&
 void shade_rough_coated(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough_conductor(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough_dielectric(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
+// The phase function of volumes stands for the BSDF.
+void shade_phase(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 // All of them, one after the other.
 void shade_rough_kinds(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 
@@ -124,8 +140,22 @@ void shade_coat_mirror(const World& world, ShadeStream& shade);
 void shade_dielectric(const World& world, uint32_t depth, Branch branch, ShadeStream& shade);
 void shade_thin_dielectric(const World& world, uint32_t depth, Branch branch, ShadeStream& shade);
 
+// For ambient_occlusion: of every first surface a direction over it, by the cosine, to be tested for what is in the
+// way.
+void ambient_occlusion(const World& world, const ShadeStream& shade, ShadowStream& shadow);
+
+// Shadow rays end short of the light by as much as float leaves uncertain about where it is.
+inline constexpr float shadow_ray_share = 0.9999f;
+
 // Adds the contributions whose light is in sight; all of them where the scene casts no shadows.
 void shadow(const World& world, const ShadowStream& shadow, Slots& slots, double* embree_seconds);
+// The same where the world has volumes, in two parts with `transmit` between them: occluded rays get dead_lane for
+// their slot, then the contributions of the others are added.
+void occlude(const World& world, ShadowStream& shadow, double* embree_seconds);
+void add_light(const ShadowStream& shadow, Slots& slots);
+// What volumes between a vertex and its light let through, interface by interface. `crossings` is scratch. Returns the
+// number of rays that met more than most_interfaces and bring nothing.
+uint32_t transmit(const World& world, ShadowStream& shadow, Batch& crossings, double* embree_seconds);
 
 // Ends paths that carry little, without bias, and makes the rays of the others.
 void roulette(uint32_t depth, const ShadeStream& shade, PathStream& next);

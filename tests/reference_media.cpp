@@ -23,6 +23,7 @@ uint32_t medium_of(const World& world, uint32_t object) {
 ReferenceMedia crossed(const World& world, const ReferenceMedia& media, const ReferenceHit& hit,
                        const Vector& direction) {
   ReferenceMedia result = media;
+  result.volume = volume_towards(world, media, hit, direction);
   const uint32_t medium = medium_of(world, hit.object);
   if (medium == 0) return result;
   if (glm::dot(direction, hit.outside) < 0) {
@@ -34,8 +35,65 @@ ReferenceMedia crossed(const World& world, const ReferenceMedia& media, const Re
   return result;
 }
 
+uint32_t volume_towards(const World& world, const ReferenceMedia& media, const ReferenceHit& hit,
+                        const Vector& direction) {
+  if (hit.object == no_index || world.objects.volume_inside[hit.object] == keeps_volume) return media.volume;
+  const bool outwards = glm::dot(direction, hit.outside) > 0;
+  return outwards ? world.objects.volume_outside[hit.object] : world.objects.volume_inside[hit.object];
+}
+
+ReferenceVolume volume_at(const World& world, uint32_t volume, double lambda_nm) {
+  const VolumeColumns& table = world.volumes;
+  const double scale = table.scale[volume];
+  return {scale * world.spectra.value(table.sigma_a[volume], lambda_nm),
+          scale * world.spectra.value(table.sigma_s[volume], lambda_nm),
+          double{table.emission_scale[volume]} * world.spectra.value(table.emission[volume], lambda_nm)};
+}
+
+void attenuate_and_glow(const World& world, uint32_t row, const reference::Spectrum4& lambda_nm, double distance,
+                        reference::Spectrum4& light) {
+  for (size_t j = 0; j < 4; ++j) {
+    const ReferenceVolume volume = volume_at(world, row, lambda_nm[j]);
+    if (!(volume.extinction() > 0)) continue;
+    const double passes = std::exp(-volume.extinction() * distance);
+    light[j] = light[j] * passes + volume.glow * volume.absorption / volume.extinction() * (1 - passes);
+  }
+}
+
+ReferenceHit place_in_volume(const Vector& position, const Vector& direction) {
+  ReferenceHit place;
+  place.position = position;
+  place.outside = place.shading = direction;
+  place.tangent = Vector(0);
+  return place;
+}
+
+reference::Spectrum4 volume_transmittance(const ReferenceScene& scene, uint32_t volume, const Vector& origin,
+                                          const Vector& direction, double distance,
+                                          const reference::Spectrum4& lambda_nm) {
+  reference::Spectrum4 depth{}, passes;
+  ReferenceMedia media;
+  media.volume = volume;
+  Vector from = origin;
+  for (double left = distance; left > 0;) {
+    const ReferenceHit hit = scene.intersect(from, direction, visible_to_crossings, left);
+    const double stretch = hit.object == no_index ? left : hit.t;
+    for (size_t j = 0; j < 4; ++j) {
+      const double extinction = volume_at(scene.world, media.volume, lambda_nm[j]).extinction();
+      if (extinction > 0) depth[j] += extinction * stretch;
+    }
+    if (hit.object == no_index) break;
+    media.volume = volume_towards(scene.world, media, hit, direction);
+    from = hit.position;
+    left -= hit.t;
+  }
+  for (size_t j = 0; j < 4; ++j) passes[j] = std::exp(-depth[j]);
+  return passes;
+}
+
 ReferenceMedia camera_media(const World& world) {
   ReferenceMedia media;
+  media.volume = world.camera_volume;
   for (const uint32_t pair : {world.camera_media[1], world.camera_media[0]})
     for (const uint32_t medium : {pair >> 16, pair & largest_medium})
       if (medium != 0) media.push_back(medium);

@@ -7,8 +7,10 @@
 
 namespace metamer {
 
-// Rows of World::media in the order of entering.
-using ReferenceMedia = std::vector<uint32_t>;
+// Rows of World::media in the order of entering, and the row of World::volumes beside them.
+struct ReferenceMedia : std::vector<uint32_t> {
+  uint32_t volume = 0;
+};
 
 // Which of them fills the space; 0 is vacuum.
 uint32_t fills(const World& world, const ReferenceMedia& media);
@@ -17,6 +19,24 @@ uint32_t medium_of(const World& world, uint32_t object);
 // Behind the surface, for a ray along `direction`.
 ReferenceMedia crossed(const World& world, const ReferenceMedia& media, const ReferenceHit& hit,
                        const Vector& direction);
+// What a ray is in that leaves the surface along `direction`, on whichever side.
+uint32_t volume_towards(const World& world, const ReferenceMedia& media, const ReferenceHit& hit,
+                        const Vector& direction);
+// Per metre, at one wavelength.
+struct ReferenceVolume {
+  double absorption = 0, scattering = 0, glow = 0;
+  double extinction() const { return absorption + scattering; }
+};
+ReferenceVolume volume_at(const World& world, uint32_t volume, double lambda_nm);
+// Light that went that far through a volume: less what is absorbed and scattered, more what glows.
+void attenuate_and_glow(const World& world, uint32_t volume, const reference::Spectrum4& lambda_nm, double distance,
+                        reference::Spectrum4& light);
+// A point without a surface; its local z axis is the direction of going on unscattered.
+ReferenceHit place_in_volume(const Vector& position, const Vector& direction);
+// What volumes let through between a point and another so many metres away, through all interfaces.
+reference::Spectrum4 volume_transmittance(const ReferenceScene& scene, uint32_t volume, const Vector& origin,
+                                          const Vector& direction, double distance,
+                                          const reference::Spectrum4& lambda_nm);
 // What rays start in at the camera.
 ReferenceMedia camera_media(const World& world);
 // Light that went that far, in metres, through what fills the space.

@@ -9,9 +9,10 @@
 #include "engine/spectrum/observers.h"
 #include "systems/bsdf/limits.h"
 #include "systems/bsdf/reference.h"
-#include "systems/bsdf/reference_coat.h"
+#include "tests/reference_camera.h"
 #include "tests/reference_lights.h"
 #include "tests/reference_media.h"
+#include "tests/reference_optics.h"
 #include "tests/reference_surfaces.h"
 
 namespace metamer {
@@ -38,30 +39,71 @@ struct Tracer {
     }
   }
 
-  struct LocalFrame {
-    Vector x, y, z;
-    Vector came;  // along the ray that hit
-    Direction in(const Vector& v) const { return {glm::dot(x, v), glm::dot(y, v), glm::dot(z, v)}; }
-    Vector out(const Direction& v) const { return x * v.x + y * v.y + z * v.z; }
-  };
-  static LocalFrame frame_of(const ReferenceHit& hit, const Vector& came) {
-    LocalFrame frame;
-    frame.came = came;
-    frame.z = hit.shading;
-    Vector along = hit.tangent - frame.z * glm::dot(frame.z, hit.tangent);
-    if (!(glm::length(along) > 1e-12))
-      along = glm::cross(std::abs(frame.z.x) > 0.5 ? Vector(0, 1, 0) : Vector(1, 0, 0), frame.z);
-    frame.x = glm::normalize(along);
-    frame.y = glm::cross(frame.z, frame.x);
-    return frame;
-  }
-
   // Radiance that arrives at `origin` against `direction` after at most `events` scatterings. `sees_lights`: area
   // lights count where they are hit, not having been sampled before; `sees_sky`: so does the environment. `together`:
   // four wavelengths on one way.
   Spectrum4 radiance(const Vector& origin, const Vector& direction, ReferenceMedia media, const Spectrum4& lambda_nm,
                      bool together, uint32_t events, bool sees_lights, bool sees_sky, uint32_t mask) {
     const ReferenceHit hit = scene.intersect(origin, direction, mask);
+    if (media.volume != 0)
+      return through_volume(hit, origin, direction, media, lambda_nm, together, events, sees_lights, sees_sky, mask);
+    return arriving(hit, origin, direction, media, lambda_nm, together, events, sees_lights, sees_sky, mask);
+  }
+
+  // A volume before what the ray meets. Where it scatters each wavelength goes its own way from here on, by its own
+  // free path; its glow is gathered where rays are scattered or absorbed.
+  Spectrum4 through_volume(const ReferenceHit& hit, const Vector& origin, const Vector& direction,
+                           const ReferenceMedia& media, const Spectrum4& lambda_nm, bool together, uint32_t events,
+                           bool sees_lights, bool sees_sky, uint32_t mask) {
+    const double distance = hit.object == no_index ? infinity : hit.t;
+    Spectrum4 result{};
+    if (!is_path || world.volumes.scatters[media.volume] == 0) {
+      result = arriving(hit, origin, direction, media, lambda_nm, together, events, sees_lights, sees_sky, mask);
+      attenuate_and_glow(world, media.volume, lambda_nm, distance, result);
+      return result;
+    }
+    for (size_t j = 0; j < 4; ++j) {
+      if (j > 0 && !together) {
+        result[j] = result[0];
+        continue;
+      }
+      Spectrum4 alone;
+      alone.fill(lambda_nm[j]);
+      const ReferenceVolume volume = volume_at(world, media.volume, lambda_nm[j]);
+      const double t = volume.extinction() > 0 ? -std::log(1 - random()) / volume.extinction() : infinity;
+      if (!(t < distance)) {
+        result[j] = arriving(hit, origin, direction, media, alone, false, events, sees_lights, sees_sky, mask)[0];
+        continue;
+      }
+      result[j] = volume.absorption / volume.extinction() * volume.glow;
+      if (events == 0) continue;
+      result[j] += volume.scattering / volume.extinction() *
+                   scattered_in(origin + t * direction, direction, media, alone, events)[0];
+    }
+    return result;
+  }
+
+  Spectrum4 scattered_in(const Vector& position, const Vector& direction, const ReferenceMedia& media,
+                         const Spectrum4& lambda_nm, uint32_t events) {
+    const double g = world.volumes.g[media.volume];
+    const ReferenceHit place = place_in_volume(position, direction);
+    const ReferenceFrame frame = reference_frame(place, direction);
+    const Spectrum4 lit = direct(place, frame, media, lambda_nm, [&](const Direction& wi) {
+      const double p = reference::eval_phase(wi.z, g);
+      return Spectrum4{p, p, p, p};
+    });
+    BsdfSample next;
+    const double u = random(), v = random();
+    next.wi = reference::sample_phase(g, u, v);
+    next.weight = {1, 1, 1, 1};
+    next.pdf = reference::eval_phase(next.wi.z, g);
+    return plus(lit, go_on(place, frame, media, next, lambda_nm, false, events));
+  }
+
+  // What comes from what the ray meets.
+  Spectrum4 arriving(const ReferenceHit& hit, const Vector& origin, const Vector& direction, ReferenceMedia media,
+                     const Spectrum4& lambda_nm, bool together, uint32_t events, bool sees_lights, bool sees_sky,
+                     uint32_t mask) {
     if (hit.object == no_index) {
       Spectrum4 sky = sees_sky ? reference_environment(world, origin, direction, lambda_nm) : Spectrum4{};
       if (sees_lights) sky = plus(sky, reference_disks(world, direction, lambda_nm));
@@ -77,7 +119,12 @@ struct Tracer {
       if (row.two_sided != 0 || glm::dot(direction, hit.outside) < 0)
         sum = reference_emission(world, row, glm::dot(direction, hit.outside), lambda_nm);
     }
-    if (events > 0) sum = plus(sum, scatter(hit, direction, media, lambda_nm, together, events));
+    if (static_cast<ShadeKind>(world.objects.shade_kind[hit.object]) == ShadeKind::interface) {
+      media.volume = volume_towards(world, media, hit, direction);
+      sum =
+          plus(sum, radiance(hit.position, direction, media, lambda_nm, together, events, sees_lights, sees_sky, mask));
+    } else if (events > 0)
+      sum = plus(sum, scatter(hit, direction, media, lambda_nm, together, events));
     attenuate(world, media, lambda_nm, hit.t, sum);
     return sum;
   }
@@ -85,13 +132,13 @@ struct Tracer {
   Spectrum4 scatter(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media,
                     const Spectrum4& lambda_nm, bool together, uint32_t events) {
     const auto [kind, row] = reference_material(world, hit.object, [&] { return random(); });
-    const LocalFrame frame = frame_of(hit, direction);
+    const ReferenceFrame frame = reference_frame(hit, direction);
     const Direction wo = frame.in(-direction);
     if (kind == ShadeKind::absorber) return {};
     if (kind == ShadeKind::dielectric || kind == ShadeKind::rough_dielectric)
       return enter({kind, row}, hit, direction, media, lambda_nm, together, events);
     if (kind == ShadeKind::thin_dielectric) {
-      const reference::ThinOptics optics = thin_optics(row, media, lambda_nm);
+      const reference::ThinOptics optics = reference_thin(world, row, fills(world, media), lambda_nm);
       return branch(
           hit, frame, media, [&](double u) { return reference::sample_thin(wo, optics, u); }, lambda_nm, together,
           events);
@@ -103,14 +150,14 @@ struct Tracer {
       return plus(lit, go_on(hit, frame, media, surface->sample(choice, u, v), lambda_nm, together, events));
     }
     if (kind == ShadeKind::smooth_coated || kind == ShadeKind::rough_coated)
-      return coated(hit, frame, media, wo, coat(kind, row, lambda_nm), lambda_nm, together, events);
+      return coated(hit, frame, media, wo, reference_coat(world, kind, row, lambda_nm), lambda_nm, together, events);
     const reference::Roughness roughness =
         kind == ShadeKind::smooth_conductor
             ? reference::Roughness{}
             : reference::Roughness{world.conductor.alpha_x[row], world.conductor.alpha_y[row]};
     const uint32_t around = fills(world, media);
-    const reference::ConductorOptics optics{relative(world.conductor.eta[row], around, lambda_nm),
-                                            relative(world.conductor.kappa[row], around, lambda_nm),
+    const reference::ConductorOptics optics{reference_relative(world, world.conductor.eta[row], around, lambda_nm),
+                                            reference_relative(world, world.conductor.kappa[row], around, lambda_nm),
                                             world.conductor.schlick[row] != 0};
     Spectrum4 lit{};
     if (kind == ShadeKind::rough_conductor)
@@ -119,28 +166,6 @@ struct Tracer {
     const double u = random(), v = random();
     return plus(lit, go_on(hit, frame, media, reference::sample_conductor(wo, roughness, optics, u, v), lambda_nm,
                            together, events));
-  }
-
-  // An index against that of a medium.
-  Spectrum4 relative(uint32_t index, uint32_t around, const Spectrum4& lambda_nm) const {
-    Spectrum4 result = reference_spectrum(world, index, lambda_nm);
-    for (size_t j = 0; j < 4; ++j) result[j] /= world.spectra.value(world.media.eta[around], lambda_nm[j]);
-    return result;
-  }
-
-  reference::ThinOptics thin_optics(uint32_t row, const ReferenceMedia& media, const Spectrum4& lambda_nm) const {
-    const DielectricColumns& table = world.dielectric;
-    const uint32_t around = table.is_absolute[row] != 0 ? fills(world, media) : 0;
-    reference::ThinOptics optics;
-    optics.eta = relative(table.eta[row], around, lambda_nm);
-    optics.kappa = relative(table.kappa[row], around, lambda_nm);
-    optics.schlick = table.schlick[row] != 0;
-    for (size_t j = 0; j < 4; ++j) {
-      const double kappa = world.spectra.value(table.kappa[row], lambda_nm[j]);
-      optics.opaque[j] = kappa >= double{refracting_kappa};
-      optics.optical_depth[j] = 4e9 * std::numbers::pi * kappa / lambda_nm[j] * double{table.thickness[row]};
-    }
-    return optics;
   }
 
   // A boundary that light crosses, smooth or rough.
@@ -156,12 +181,12 @@ struct Tracer {
     const bool parts = table.dispersive[row] != 0 || world.media.dispersive[around] != 0;
     if (together && parts) return disperse(hit, direction, media, lambda_nm, events);
     reference::DielectricOptics optics;
-    optics.eta = relative(table.eta[row], around, lambda_nm);
-    optics.kappa = relative(table.kappa[row], around, lambda_nm);
+    optics.eta = reference_relative(world, table.eta[row], around, lambda_nm);
+    optics.kappa = reference_relative(world, table.kappa[row], around, lambda_nm);
     optics.schlick = table.schlick[row] != 0;
     for (size_t j = 0; j < 4; ++j)
       optics.opaque[j] = world.spectra.value(table.kappa[row], lambda_nm[j]) >= double{refracting_kappa};
-    const LocalFrame frame = frame_of(hit, direction);
+    const ReferenceFrame frame = reference_frame(hit, direction);
     const Direction wo = frame.in(-direction);
     if (material.kind == ShadeKind::dielectric)
       return branch(
@@ -177,8 +202,9 @@ struct Tracer {
   }
 
   // Without chance both: the mirror image, and the body by its own direction.
-  Spectrum4 coated(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media, const Direction& wo,
-                   const reference::CoatOptics& optics, const Spectrum4& lambda_nm, bool together, uint32_t events) {
+  Spectrum4 coated(const ReferenceHit& hit, const ReferenceFrame& frame, const ReferenceMedia& media,
+                   const Direction& wo, const reference::CoatOptics& optics, const Spectrum4& lambda_nm, bool together,
+                   uint32_t events) {
     const auto evaluate = [&](const Direction& wi) { return reference::eval_coated(wo, optics, wi).f_cos; };
     const Spectrum4 lit = direct(hit, frame, media, lambda_nm, evaluate);
     const double choice = random(), u = random(), v = random();
@@ -197,20 +223,6 @@ struct Tracer {
                           go_on(hit, frame, media, mirror, lambda_nm, together, events)));
   }
 
-  reference::CoatOptics coat(ShadeKind kind, uint32_t row, const Spectrum4& lambda_nm) const {
-    const CoatedColumns& table = kind == ShadeKind::smooth_coated ? world.smooth_coated : world.rough_coated;
-    return {reference_spectrum(world, table.reflectance[row], lambda_nm),
-            reference_spectrum(world, table.eta[row], lambda_nm),
-            double{table.alpha_x[row]},
-            table.schlick[row] != 0,
-            table.albedos.data(),
-            {table.first_row[row], table.row_stride[row], table.last_pair[row], table.eta_least[row],
-             table.rows_per_eta[row]},
-            double{table.alpha_y[row]},
-            double{table.thickness[row]},
-            double{table.hits[row]}};
-  }
-
   // Each wavelength goes its own way from here on.
   Spectrum4 disperse(const ReferenceHit& hit, const Vector& direction, const ReferenceMedia& media,
                      const Spectrum4& lambda_nm, uint32_t events) {
@@ -224,7 +236,7 @@ struct Tracer {
   }
 
   template <class Evaluate>
-  Spectrum4 direct(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
+  Spectrum4 direct(const ReferenceHit& hit, const ReferenceFrame& frame, const ReferenceMedia& media,
                    const Spectrum4& lambda_nm, const Evaluate& evaluate) {
     Spectrum4 sum{};
     for (const uint32_t light : summed) sum = plus(sum, light_from(hit, frame, media, lambda_nm, evaluate, light, 1));
@@ -237,7 +249,7 @@ struct Tracer {
   }
 
   template <class Evaluate>
-  Spectrum4 light_from(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
+  Spectrum4 light_from(const ReferenceHit& hit, const ReferenceFrame& frame, const ReferenceMedia& media,
                        const Spectrum4& lambda_nm, const Evaluate& evaluate, uint32_t light, double count) {
     const ReferenceLightPoint sample = reference_light_point(world.lights[light], hit.position, random);
     if (!(sample.factor > 0)) return {};
@@ -249,26 +261,34 @@ struct Tracer {
     Spectrum4 result = reference_radiance(world, world.lights[light], lambda_nm);
     const Spectrum4 image = reference_light_image(world, light, -sample.direction, lambda_nm);
     for (size_t j = 0; j < 4; ++j) result[j] *= f_cos[j] * image[j] * sample.factor * count;
-    attenuate(world, next_media(media, hit, frame.came, sample.direction), lambda_nm, sample.distance, result);
+    through_media(next_media(media, hit, frame.came, sample.direction), hit.position, sample.direction, sample.distance,
+                  lambda_nm, result);
     return result;
   }
 
   template <class Evaluate>
-  Spectrum4 sky_through_everything(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
+  Spectrum4 sky_through_everything(const ReferenceHit& hit, const ReferenceFrame& frame, const ReferenceMedia& media,
                                    const Spectrum4& lambda_nm, const Evaluate& evaluate) {
     const Vector direction = reference_direction(random);
     Spectrum4 result = reference_environment(world, hit.position, direction, lambda_nm);
     const Spectrum4 f_cos = evaluate(frame.in(direction));
     for (size_t j = 0; j < 4; ++j) result[j] *= f_cos[j] * 4 * std::numbers::pi;
-    attenuate(world, next_media(media, hit, frame.came, direction), lambda_nm, infinity, result);
+    through_media(next_media(media, hit, frame.came, direction), hit.position, direction, infinity, lambda_nm, result);
     return result;
+  }
+
+  void through_media(const ReferenceMedia& media, const Vector& from, const Vector& direction, double distance,
+                     const Spectrum4& lambda_nm, Spectrum4& light) const {
+    attenuate(world, media, lambda_nm, distance, light);
+    const Spectrum4 passes = volume_transmittance(scene, media.volume, from, direction, distance, lambda_nm);
+    for (size_t j = 0; j < 4; ++j) light[j] *= passes[j];
   }
 
   // A smooth boundary: one of its two lobes by chance, or without chance each that there is. `sample` reflects for
   // small random numbers.
   template <class Sample>
-  Spectrum4 branch(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media, const Sample& sample,
-                   const Spectrum4& lambda_nm, bool together, uint32_t events) {
+  Spectrum4 branch(const ReferenceHit& hit, const ReferenceFrame& frame, const ReferenceMedia& media,
+                   const Sample& sample, const Spectrum4& lambda_nm, bool together, uint32_t events) {
     if (is_path) return go_on(hit, frame, media, sample(random()), lambda_nm, together, events);
     Spectrum4 sum{};
     BsdfSample lobes[2] = {sample(0), sample(1 - 1e-15)};
@@ -284,10 +304,13 @@ struct Tracer {
   ReferenceMedia next_media(const ReferenceMedia& media, const ReferenceHit& hit, const Vector& came,
                             const Vector& direction) const {
     const bool crosses = glm::dot(came, hit.outside) * glm::dot(direction, hit.outside) > 0;
-    return crosses ? crossed(world, media, hit, direction) : media;
+    ReferenceMedia next = media;
+    if (hit.object != no_index && crosses) next = crossed(world, media, hit, direction);
+    next.volume = volume_towards(world, media, hit, direction);
+    return next;
   }
 
-  Spectrum4 go_on(const ReferenceHit& hit, const LocalFrame& frame, const ReferenceMedia& media,
+  Spectrum4 go_on(const ReferenceHit& hit, const ReferenceFrame& frame, const ReferenceMedia& media,
                   const BsdfSample& sample, const Spectrum4& lambda_nm, bool together, uint32_t events) {
     if (!(sample.pdf > 0)) return {};
     if (sample.delta && world.settings.integrator == Integrator::local) return {};
@@ -304,39 +327,10 @@ struct Tracer {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]};
   }
 
-  // The pixel filter's shape by rejection.
-  double filter_offset(double radius) {
-    const PixelFilter& filter = world.filter;
-    for (;;) {
-      const double x = radius * (2 * random() - 1);
-      double height = 1;
-      if (filter.kind == FilterKind::triangle) height = 1 - std::abs(x) / radius;
-      if (filter.kind == FilterKind::gaussian) {
-        const double s = -0.5 / (filter.sigma * filter.sigma), edge = std::exp(s * radius * radius);
-        height = (std::exp(s * x * x) - edge) / (1 - edge);
-      }
-      if (random() < height) return x;
-    }
-  }
-
   Spectrum4 camera_radiance(uint32_t x, uint32_t y, const Spectrum4& lambda_nm) {
-    const CameraRow& camera = world.camera;
-    const double film_x = x + 0.5 + filter_offset(world.filter.radius_x);
-    const double film_y = y + 0.5 + filter_offset(world.filter.radius_y);
-    const Vector across = read3(camera.right) * film_x + read3(camera.down) * film_y;
-    Vector origin = read3(camera.origin), direction = read3(camera.axis);
-    (camera.kind == CameraKind::perspective ? direction : origin) += across;
-    direction = glm::normalize(direction);
-    if (camera.lens_radius > 0) {
-      const double depth = camera.focal_distance / glm::dot(direction, read3(camera.forward));
-      const Vector focus = origin + depth * direction;
-      double u = 1, v = 1;
-      while (u * u + v * v > 1) u = 2 * random() - 1, v = 2 * random() - 1;
-      origin += read3(camera.lens_x) * u + read3(camera.lens_y) * v;
-      direction = glm::normalize(focus - origin);
-    }
-    return radiance(origin, direction, camera_media(world), lambda_nm, true, world.settings.max_depth, true, true,
-                    visible_to_camera);
+    const ReferenceRay ray = reference_camera_ray(world, x, y, random);
+    return radiance(ray.origin, ray.direction, camera_media(world), lambda_nm, true, world.settings.max_depth, true,
+                    true, visible_to_camera);
   }
 
   std::array<double, 3> sample_xyz(uint32_t x, uint32_t y) {

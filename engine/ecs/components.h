@@ -15,6 +15,7 @@ using MeshId = uint32_t;      // an index into Scene::meshes
 using CurvesId = uint32_t;    // an index into Scene::curves
 using ImageId = uint32_t;     // an index into Scene::images
 using NameId = uint32_t;      // an index into Scene::names
+using GridId = uint32_t;      // an index into Scene::grids
 
 // Local to parent: the first three rows of an affine matrix, points as columns. Mirrors and non-uniform scales
 // are allowed; a singular one is the user's mistake.
@@ -77,7 +78,8 @@ enum class MaterialKind : uint32_t {
   layered,
   diffuse_transmission,
   mix,
-  hair
+  hair,
+  interface
 };
 enum class FresnelModel : uint32_t { exact, schlick };
 
@@ -95,6 +97,7 @@ inline constexpr uint32_t largest_priority = 255;
 // `thickness` whose two faces are one surface; no inside. rough: diffuse `kd` plus Phong-Blinn `ks`, `shininess` (see
 // systems/bsdf/rough-inl.h); as taught, both in sr^-1 and without a bound, or `normalized`, both albedos.
 // coated: diffuse `reflectance` under a clear coat of index `eta` and one GGX width, alpha_x = alpha_y.
+// interface: nothing to see; only the media on its two sides differ.
 // layered: pbrt's coat (systems/bsdf/coat_layer.h): a surface of index `eta` and GGX roughness over a `layer` and a
 // `base`. diffuse_transmission: `reflectance` and `transmittance`, both lambertian. mix: of two other entities'
 // materials. hair: `eta` and what `hair` says.
@@ -221,7 +224,39 @@ struct Visibility {
   static constexpr auto fields = std::make_tuple(&Visibility::mask);
 };
 
-// The media on both sides of a surface; a null entity is vacuum.
+// What fills space between surfaces, absorbs, scatters and glows. Per metre of the world: `sigma_a`, `sigma_s`, times
+// `scale`. `g` is Henyey and Greenstein's mean cosine, -1 < g < 1, positive: forward. `emission` times `emission_scale`
+// is radiance, W m^-2 sr^-1 nm^-1: a metre of it adds sigma_a times as much.
+struct Medium {
+  SpectrumId sigma_a = 0, sigma_s = 0;
+  float scale = 1;
+  float g = 0;
+  SpectrumId emission = 0;
+  float emission_scale = 1;
+  static constexpr auto fields = std::make_tuple(&Medium::sigma_a, &Medium::sigma_s, &Medium::scale, &Medium::g,
+                                                 &Medium::emission, &Medium::emission_scale);
+};
+
+// How the Medium of the same entity varies in space: factors on it, from grids that fill the box from `lower` to
+// `upper` in the entity's local space, nothing outside. Handles are no_index where there is no grid. `density`
+// multiplies both sigmas, `sigma_a` and `sigma_s` (three numbers per cell, unbounded rgb) each its own; `emission` (one
+// or three) multiplies the emission. `temperature`, kelvin after (T - temperature_offset) temperature_scale, stands for
+// an emission of its own. With `file` the grids are those of that name in a NanoVDB file, in its coordinates.
+struct MediumGrid {
+  GridId density = no_index, sigma_a = no_index, sigma_s = no_index;
+  GridId emission = no_index, temperature = no_index;
+  glm::vec3 lower{0, 0, 0}, upper{1, 1, 1};
+  float temperature_offset = 0, temperature_scale = 1;
+  NameId file = no_index;
+  static constexpr auto fields =
+      std::make_tuple(&MediumGrid::density, &MediumGrid::sigma_a, &MediumGrid::sigma_s, &MediumGrid::emission,
+                      &MediumGrid::temperature, &MediumGrid::lower, &MediumGrid::upper, &MediumGrid::temperature_offset,
+                      &MediumGrid::temperature_scale, &MediumGrid::file);
+};
+
+// Entities with a Medium on both sides of a surface: a ray that crosses it is in that of the side it goes to, whatever
+// it was in before. A null entity is vacuum. Where both are the same, or without a slot, rays keep what they are in. Of
+// a camera, `outside` is what its rays start in.
 struct MediumSlot {
   Entity inside, outside;
   static constexpr auto fields = std::make_tuple(&MediumSlot::inside, &MediumSlot::outside);
@@ -235,6 +270,6 @@ struct Source {
 };
 
 using Registry = BasicRegistry<Transform, Motion, Parent, Geometry, Material, MaterialSlot, Light, Camera, Name,
-                               Visibility, MediumSlot, Source>;
+                               Visibility, Medium, MediumGrid, MediumSlot, Source>;
 
 }  // namespace metamer

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -45,6 +46,14 @@ struct Image {
   ColorSpace color_space = ColorSpace::srgb;
 };
 
+// Values at the centres of nx by ny by nz cells, x fastest.
+struct Grid {
+  uint32_t nx = 1, ny = 1, nz = 1;
+  uint32_t channels = 1;  // or 3: linear RGB
+  ColorSpace color_space = ColorSpace::srgb;
+  std::vector<float> values;  // channels * nx * ny * nz
+};
+
 struct Filter {
   FilterKind kind = FilterKind::gaussian;
   float radius_x = 1.5f, radius_y = 1.5f;  // pixels
@@ -52,9 +61,10 @@ struct Filter {
 };
 
 // Which light is followed (DESIGN.md, section 1). local: what the eye ray meets, lit by the light sources. recursive:
-// and ideal reflection and refraction. path: global illumination.
-enum class Integrator : uint32_t { local, recursive, path };
-inline constexpr std::array<std::string_view, 3> integrator_names = {"local", "recursive", "path"};
+// and ideal reflection and refraction. path: global illumination. ambient_occlusion: no light of the scene; how much of
+// its hemisphere the first surface sees, weighted by the cosine, times white of 1 cd/m^2.
+enum class Integrator : uint32_t { local, recursive, path, ambient_occlusion };
+inline constexpr std::array<std::string_view, 4> integrator_names = {"local", "recursive", "path", "ambient_occlusion"};
 constexpr std::string_view integrator_name(Integrator integrator) {
   return integrator_names[static_cast<size_t>(integrator)];
 }
@@ -65,6 +75,8 @@ struct RenderSettings {
   uint32_t max_depth = 16;  // scattering events on a path: 0 shows emission only
   uint32_t seed = 0;
   Integrator integrator = Integrator::path;
+  float occlusion_distance = std::numeric_limits<float>::infinity();  // metres; ambient_occlusion: what lies beyond
+                                                                      // does not count
   bool shadows = true;      // false: light sources shine through everything on what they light
   uint32_t band_count = 0;  // of the spectral film; 0: none
   Filter filter;
@@ -117,6 +129,7 @@ struct Scene {
   std::vector<Curves> curves;
   std::vector<Image> images;
   std::vector<Texture> textures;
+  std::vector<Grid> grids;
   NameTable names;
   RenderSettings settings;
 

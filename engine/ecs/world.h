@@ -20,6 +20,7 @@ struct ObjectColumns {
   Column<uint32_t> first_light;     // light row of the first triangle, or no_index
   Column<uint32_t> placement;       // row in World::placements; 0 is the identity: vertices are in world space
   Column<uint32_t> visibility;      // mask of rays that see it
+  Column<uint32_t> volume_inside, volume_outside;  // rows of World::volumes; keeps_volume in both: as before
   Column<uint32_t> first_key;       // into World::motion_keys; unused by what stands still
   Column<uint32_t> key_count;       // 0: it stands still; else 2 or more, evenly spaced over the time of the shutter
   Column<uint32_t> alpha;           // program of TextureSet: the chance that a ray meets it; no_index: 1
@@ -103,6 +104,17 @@ struct MediumColumns {
 // A path's media, highest priority first: four rows of 16 bits, the first in the low half of [0].
 inline constexpr uint32_t media_stack_size = 4, largest_medium = 0xffff;
 
+// What fills space between surfaces (component Medium), beside the optics of solids in MediumColumns. Row 0 is empty.
+struct VolumeColumns {
+  Column<uint32_t> sigma_a, sigma_s;  // SpectrumId, per metre, times `scale`
+  Column<uint32_t> emission;          // SpectrumId, W m^-2 sr^-1 nm^-1, times `emission_scale`
+  Column<float> scale, emission_scale, g;
+  Column<uint32_t> scatters;  // 0: rays go straight through, whatever is absorbed on the way
+};
+inline constexpr uint32_t keeps_volume = 0xffffffffu;
+// Beside those of component Visibility: shadow rays that look for the interfaces on their way.
+inline constexpr uint32_t visible_to_crossings = 8;
+
 // A light that can be chosen: one triangle or quadric, a point, a direction or a disc of directions, or an
 // environment.
 enum class LightShape : uint32_t {
@@ -152,6 +164,9 @@ struct LightRow {
   float cosine_power = 0;  // shapes with an area: radiance goes with cos^cosine_power
 };
 static_assert(sizeof(LightRow) == 32 * sizeof(float));
+// Who finds a light: light samples and rays that run into it; samples alone (no bounced ray sees it); or rays alone
+// (whether it is there differs from point to point).
+enum class LightFinding : uint32_t { both, samples, rays };
 
 // An image that is a factor on a light's spectrum: RGB fitted to spectra. nearest: the texel, as pbrt-v4 reads images
 // of equal areas. linear: between the texels' centres, clamped at the image's edges, or around the circle in u.
@@ -242,14 +257,18 @@ struct World {
   Column<MixRow> mixes;
   MediumColumns media;
   uint32_t camera_media[2] = {0, 0};  // the stack that paths start with
+  VolumeColumns volumes;
+  uint32_t camera_volume = 0;  // the row of volumes that paths start in
   Column<LightRow> lights;
   Column<uint32_t> image_of_light;  // its row of images, or no_index
   LightImages light_images;
+  Column<uint32_t> light_finding;       // LightFinding by row of lights
   std::vector<uint32_t> distant_disks;  // the rows of lights of that shape: rays that leave the scene run into them
   Distribution1D light_choice;          // over the rows of lights that are sampled; empty where there is none
   Column<uint32_t> summed_lights;  // rows of abstract lights that are summed one by one (local, recursive), not sampled
   std::vector<Environment> environments;  // rays that leave the scene run into all of them
   TextureSet textures;
+  SpectrumId ambient_light = zero_spectrum;  // radiance of what ambient_occlusion sees
   // By kind and row: what bends the shading normal. A program of TextureSet, or their number plus a row of normal_maps;
   // no_index: nothing. Columns end with the last that has one.
   std::array<Column<uint32_t>, shade_kind_count> bumps;
@@ -266,6 +285,9 @@ struct World {
   bool has_curves = false;
   bool has_motion = false;          // some objects move: paths carry their time
   bool has_interiors = false;       // some material is followed: paths carry their media
+  bool has_volumes = false;         // volumes other than the empty one, or interfaces: paths carry what they are in
+  bool has_interfaces = false;      // surfaces of ShadeKind::interface
+  bool shares_paths = false;        // free paths differ between wavelengths: paths carry their shares (PathStream)
   bool has_textured_alpha = false;  // some roughness varies
   bool has_bumps = false;
   bool has_masks = false;         // some object's alpha is not 1

@@ -23,6 +23,9 @@ std::optional<Material> read_material(SceneContext& context, const Json::Value& 
 void read_light(SceneContext& context, Entity entity, const Json::Value& value);
 void read_sky(SceneContext& context, Entity entity, const JsonObject& object);
 std::optional<Camera> read_camera(const SceneContext& context, const Json::Value& value);
+// The file's "media", each an entity; and by their names those on both sides of a surface.
+void read_media(SceneContext& context, const Json::Value& media);
+MediumSlot read_medium_slot(const SceneContext& context, const Json::Value& value);
 Visibility read_visibility(const SceneContext& context, const Json::Value& value);
 
 }  // namespace metamer

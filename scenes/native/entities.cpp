@@ -63,6 +63,7 @@ class EntityReader {
       if (const auto geometry = read_geometry(context_, *value)) registry_.set(entity, *geometry);
     if (const Json::Value* value = object.find("light")) set_light(entity, object, *value);
     if (const Json::Value* value = object.find("visibility")) registry_.set(entity, read_visibility(context_, *value));
+    if (const Json::Value* value = object.find("media")) set_media(entity, object, *value);
     if (const Json::Value* value = object.find("motion")) registry_.set(entity, read_motion(context_, *value));
     const Transform transform = read_transform(context_, object.find("transform"));
     if (object.has("camera")) {
@@ -108,6 +109,12 @@ class EntityReader {
     } else {
       registry_.set(entity, MaterialSlot{found->second.entity});
     }
+  }
+
+  void set_media(Entity entity, const JsonObject& object, const Json::Value& value) {
+    if (!object.has("geometry") && !object.has("camera"))
+      reader_.error(value, "'media' needs a 'geometry' or a 'camera' on the same entity");
+    registry_.set(entity, read_medium_slot(context_, value));
   }
 
   void set_light(Entity entity, const JsonObject& object, const Json::Value& value) {

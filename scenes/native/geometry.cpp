@@ -7,6 +7,7 @@
 #include "scenes/meshes/read_mesh.h"
 #include "scenes/native/components.h"
 #include "scenes/native/rows.h"
+#include "scenes/native/varying.h"
 
 namespace metamer {
 namespace {
@@ -123,6 +124,7 @@ std::optional<Geometry> read_geometry(SceneContext& context, const Json::Value& 
     return object.has(key) ? context.metres(object.number(key, range, 1)) : fallback;
   };
   geometry.flip_normal = object.boolean("flip_normal", false) ? 1 : 0;
+  geometry.alpha_texture = read_alpha(context, object);
   if (object.type() == "mesh") {
     geometry.kind = ShapeKind::mesh;
     if (object.has("mesh")) geometry.mesh = read_mesh_reference(context, *object.find("mesh"));

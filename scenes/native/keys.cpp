@@ -5,11 +5,11 @@ namespace {
 
 constexpr bool required = true;
 
-constexpr KeySpec scene[] = {{"$schema"},  {"metamer", required}, {"units"},  {"settings"}, {"spectra"},
-                             {"textures"}, {"materials"},         {"meshes"}, {"curves"},   {"entities", required}};
+constexpr KeySpec scene[] = {{"$schema"},   {"metamer", required}, {"units"},  {"settings"}, {"spectra"}, {"textures"},
+                             {"materials"}, {"media"},             {"meshes"}, {"curves"},   {"entities", required}};
 constexpr KeySpec settings[] = {{"size"},    {"samples"}, {"max_depth"},    {"seed"},         {"integrator"},
                                 {"shadows"}, {"filter"},  {"exposure"},     {"sensor_scale"}, {"spectral"},
-                                {"color"},   {"crop"},    {"pixel_jitter"}, {"shutter"}};
+                                {"color"},   {"crop"},    {"pixel_jitter"}, {"shutter"},      {"occlusion_distance"}};
 constexpr KeySpec filter_box[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_triangle[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_gaussian[] = {{"type", required}, {"radius"}, {"sigma"}};
@@ -17,11 +17,13 @@ constexpr KeySpec spectrum[] = {{"constant"}, {"table"}, {"named"},   {"blackbod
                                 {"space"},    {"scale"}, {"samples"}, {"sigmoid"},   {"times"}};
 constexpr KeySpec texture_reference[] = {{"texture", required}};
 constexpr KeySpec texture_constant[] = {{"type", required}, {"value", required}, {"number"}};
-constexpr KeySpec texture_image[] = {{"type", required}, {"image", required}, {"encoding"}, {"space"},   {"wrap"},
-                                     {"filter"},         {"scale"},           {"invert"},   {"mapping"}, {"number"}};
+constexpr KeySpec texture_image[] = {{"type", required}, {"image", required}, {"encoding"}, {"space"},
+                                     {"wrap"},           {"filter"},          {"scale"},    {"invert"},
+                                     {"mapping"},        {"number"},          {"channel"}};
 constexpr KeySpec texture_checkerboard[] = {{"type", required}, {"a"}, {"b"}, {"mapping"}, {"number"}};
 constexpr KeySpec texture_scale[] = {{"type", required}, {"a", required}, {"b"}, {"number"}};
 constexpr KeySpec texture_mix[] = {{"type", required}, {"a", required}, {"b", required}, {"amount"}, {"number"}};
+constexpr KeySpec texture_square_root[] = {{"type", required}, {"a", required}};
 constexpr KeySpec texture_coordinate[] = {{"type", required}, {"axis"}, {"mapping"}};
 constexpr KeySpec texture_facing[] = {{"type", required}, {"direction"}};
 constexpr KeySpec texture_dots[] = {{"type", required}, {"mapping"}};
@@ -32,38 +34,49 @@ constexpr KeySpec texture_marble[] = {{"type", required}, {"scale"},     {"varia
 constexpr KeySpec mapping_uv[] = {{"type", required}, {"scale"}, {"offset"}};
 constexpr KeySpec mapping_in_space[] = {{"type", required}, {"to_texture"}};
 constexpr KeySpec mapping_planar[] = {{"type", required}, {"to_texture"}, {"u_axis"}, {"v_axis"}, {"offset"}};
-constexpr KeySpec material_diffuse[] = {{"type", required}, {"reflectance", required}};
-constexpr KeySpec material_rough[] = {{"type", required}, {"kd"}, {"ks"}, {"shininess"}, {"normalized"}};
-constexpr KeySpec material_coated[] = {{"type", required}, {"reflectance", required}, {"glass"}, {"eta"}, {"roughness"},
-                                       {"fresnel"}};
-constexpr KeySpec material_layered[] = {{"type", required}, {"reflectance", required}, {"glass"},    {"eta"},
-                                        {"roughness"},      {"optical_thickness"},     {"max_depth"}};
+constexpr KeySpec material_diffuse[] = {
+    {"type", required}, {"reflectance", required}, {"displacement"}, {"normal_map"}};
+constexpr KeySpec material_rough[] = {{"type", required}, {"kd"},           {"ks"},        {"shininess"},
+                                      {"normalized"},     {"displacement"}, {"normal_map"}};
+constexpr KeySpec material_coated[] = {
+    {"type", required}, {"reflectance", required}, {"glass"},     {"eta"}, {"roughness"},
+    {"fresnel"},        {"displacement"},          {"normal_map"}};
+constexpr KeySpec material_layered[] = {{"type", required}, {"reflectance", required}, {"glass"},     {"eta"},
+                                        {"roughness"},      {"optical_thickness"},     {"max_depth"}, {"displacement"},
+                                        {"normal_map"}};
 constexpr KeySpec material_diffuse_transmission[] = {
-    {"type", required}, {"reflectance", required}, {"transmittance", required}};
+    {"type", required}, {"reflectance", required}, {"transmittance", required}, {"displacement"}, {"normal_map"}};
 constexpr KeySpec material_mix[] = {{"type", required}, {"first", required}, {"second", required}, {"amount"}};
-constexpr KeySpec material_conductor[] = {{"type", required}, {"metal"},     {"eta"},
-                                          {"kappa"},          {"roughness"}, {"fresnel"}};
-constexpr KeySpec material_dielectric[] = {{"type", required}, {"glass"},    {"eta"},  {"kappa"},    {"roughness"},
-                                           {"fresnel"},        {"priority"}, {"thin"}, {"thickness"}};
-constexpr KeySpec material_smooth[] = {{"type", required}, {"metal"},    {"glass"}, {"n"},        {"kappa"},
-                                       {"fresnel"},        {"priority"}, {"thin"},  {"thickness"}};
+constexpr KeySpec material_conductor[] = {{"type", required}, {"metal"},      {"eta"},
+                                          {"kappa"},          {"roughness"},  {"fresnel"},
+                                          {"displacement"},   {"normal_map"}, {"reflectance"}};
+constexpr KeySpec material_dielectric[] = {{"type", required}, {"glass"},        {"eta"},       {"kappa"},
+                                           {"roughness"},      {"fresnel"},      {"priority"},  {"thin"},
+                                           {"thickness"},      {"displacement"}, {"normal_map"}};
+constexpr KeySpec material_smooth[] = {{"type", required}, {"metal"},        {"glass"},     {"n"},
+                                       {"kappa"},          {"fresnel"},      {"priority"},  {"thin"},
+                                       {"thickness"},      {"displacement"}, {"normal_map"}};
 constexpr KeySpec material_mirror[] = {{"type", required}};
+constexpr KeySpec material_interface[] = {{"type", required}};
+constexpr KeySpec medium_homogeneous[] = {{"type", required}, {"sigma_a"},       {"sigma_s"}, {"scale"}, {"g"},
+                                          {"emission"},       {"emission_scale"}};
+constexpr KeySpec entity_media[] = {{"inside"}, {"outside"}};
 constexpr KeySpec mesh[] = {{"file"}, {"positions"}, {"indices"}, {"normals"}, {"uvs"}};
-constexpr KeySpec entity[] = {{"name"},     {"parent"}, {"transform"}, {"motion"},    {"geometry"},
-                              {"material"}, {"light"},  {"camera"},    {"visibility"}};
+constexpr KeySpec entity[] = {{"name"},     {"parent"}, {"transform"}, {"motion"},     {"geometry"},
+                              {"material"}, {"light"},  {"camera"},    {"visibility"}, {"media"}};
 constexpr KeySpec transform[] = {{"matrix"}, {"translate"}, {"rotate"}, {"scale"}, {"look_at"}};
 constexpr KeySpec rotate[] = {{"axis", required}, {"degrees", required}};
 constexpr KeySpec look_at[] = {{"from", required}, {"to", required}, {"up"}};
-constexpr KeySpec geometry_mesh[] = {{"type", required}, {"mesh", required}, {"flip_normal"}};
+constexpr KeySpec geometry_mesh[] = {{"type", required}, {"mesh", required}, {"flip_normal"}, {"alpha"}};
 constexpr KeySpec curves[] = {{"points", required}, {"widths", required}, {"segments"}, {"normals"}};
-constexpr KeySpec geometry_sphere[] = {{"type", required}, {"radius"},  {"z_min"},
-                                       {"z_max"},          {"phi_max"}, {"flip_normal"}};
-constexpr KeySpec geometry_disk[] = {{"type", required}, {"radius"},  {"inner_radius"},
-                                     {"height"},         {"phi_max"}, {"flip_normal"}};
-constexpr KeySpec geometry_cylinder[] = {{"type", required}, {"radius"},  {"z_min"},
-                                         {"z_max"},          {"phi_max"}, {"flip_normal"}};
-constexpr KeySpec geometry_curves[] = {{"type", required}, {"curves", required}, {"kind"}, {"flip_normal"}};
-constexpr KeySpec geometry_rectangle[] = {{"type", required}, {"width"}, {"depth"}, {"flip_normal"}};
+constexpr KeySpec geometry_sphere[] = {{"type", required}, {"radius"},      {"z_min"}, {"z_max"},
+                                       {"phi_max"},        {"flip_normal"}, {"alpha"}};
+constexpr KeySpec geometry_disk[] = {{"type", required}, {"radius"},      {"inner_radius"}, {"height"},
+                                     {"phi_max"},        {"flip_normal"}, {"alpha"}};
+constexpr KeySpec geometry_cylinder[] = {{"type", required}, {"radius"},      {"z_min"}, {"z_max"},
+                                         {"phi_max"},        {"flip_normal"}, {"alpha"}};
+constexpr KeySpec geometry_curves[] = {{"type", required}, {"curves", required}, {"kind"}, {"flip_normal"}, {"alpha"}};
+constexpr KeySpec geometry_rectangle[] = {{"type", required}, {"width"}, {"depth"}, {"flip_normal"}, {"alpha"}};
 constexpr KeySpec light_area[] = {{"type", required}, {"radiance"}, {"luminance"}, {"nits"},  {"lumens"}, {"spectrum"},
                                   {"cosine_power"},   {"scale"},    {"two_sided"}, {"power"}, {"image"},  {"space"}};
 constexpr KeySpec light_point[] = {{"type", required}, {"intensity"}, {"candela"}, {"lumens"}, {"spectrum"}, {"scale"}};
@@ -112,6 +125,7 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"mapping.cylindrical", mapping_in_space},
                                 {"mapping.planar", mapping_planar},
                                 {"mapping.point", mapping_in_space},
+                                {"texture.square_root", texture_square_root},
                                 {"material.diffuse", material_diffuse},
                                 {"material.rough", material_rough},
                                 {"material.coated", material_coated},
@@ -122,6 +136,9 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"material.dielectric", material_dielectric},
                                 {"material.smooth", material_smooth},
                                 {"material.mirror", material_mirror},
+                                {"material.interface", material_interface},
+                                {"medium.homogeneous", medium_homogeneous},
+                                {"entity_media", entity_media},
                                 {"mesh", mesh},
                                 {"curves", curves},
                                 {"entity", entity},

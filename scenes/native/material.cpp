@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "scenes/native/components.h"
 #include "scenes/native/spectra.h"
+#include "scenes/native/varying.h"
 #include "systems/bsdf/limits.h"
 
 namespace metamer {
@@ -23,6 +26,21 @@ void read_roughness(const SceneContext& context, const JsonObject& object, Mater
   }
   material.alpha_x = static_cast<float>(alpha[0]);
   material.alpha_y = static_cast<float>(alpha[1]);
+}
+
+// The same where each of them may be a texture.
+void read_varying_roughness(SceneContext& context, const JsonObject& object, Material& material) {
+  const Json::Value* value = object.find("roughness");
+  const bool is_pair = value != nullptr && value->isArray() && value->size() == 2;
+  const bool varies =
+      value != nullptr && (is_texture(*value) || (is_pair && (is_texture((*value)[0]) || is_texture((*value)[1]))));
+  if (!varies) return read_roughness(context, object, material);
+  const NumberOrTexture x = read_number_or_texture(context, is_pair ? (*value)[0] : *value, "roughness", not_negative);
+  const NumberOrTexture y = is_pair ? read_number_or_texture(context, (*value)[1], "roughness", not_negative) : x;
+  material.alpha_x = x.number;
+  material.alpha_y = y.number;
+  material.alpha_x_texture = x.texture;
+  material.alpha_y_texture = y.texture;
 }
 
 // A spectrum, or a texture in its place.
@@ -67,12 +85,31 @@ void read_index(SceneContext& context, const JsonObject& object, std::string_vie
     material.kappa = read_spectrum(context, *object.find("kappa"), "kappa", Quantity::kappa);
 }
 
+// The metal of index 1 + i kappa that reflects so much along the normal, as a spectrum or a texture.
+void read_metal_reflectance(SceneContext& context, const Json::Value& value, Material& material) {
+  SpectrumSet& spectra = context.scene.spectra;
+  material.eta = unit_spectrum;
+  if (is_texture(value)) {
+    material.reflectance_texture = read_texture_reference(context, value, false).value_or(no_index);
+    return;
+  }
+  Samples kappa = spectra.samples(read_spectrum(context, value, "reflectance", Quantity::reflectance));
+  for (double& sample : kappa) {
+    const double r = std::clamp(sample, 0.0, 0.9999);
+    sample = 2 * std::sqrt(r / (1 - r));
+  }
+  material.kappa = spectra.add_samples(kappa).id;
+}
+
 void read_conductor(SceneContext& context, const JsonObject& object, Material& material) {
-  constexpr std::string_view ways[] = {"metal", "eta"};
+  constexpr std::string_view ways[] = {"metal", "eta", "reflectance"};
   read_index(context, object, "eta", ways, material);
+  if (object.has("reflectance")) read_metal_reflectance(context, *object.find("reflectance"), material);
+  if (object.has("reflectance") && object.has("kappa"))
+    context.reader.error(*object.find("kappa"), "'reflectance' and 'kappa' exclude each other");
   if (object.has("eta") && !object.has("kappa"))
     context.reader.error(object.value(), "a conductor with 'eta' lacks the required key 'kappa'");
-  read_roughness(context, object, material);
+  read_varying_roughness(context, object, material);
 }
 
 // Where light can go inside: how the inside is told from what overlaps it, or that there is none.
@@ -98,8 +135,9 @@ void read_dielectric(SceneContext& context, const JsonObject& object, Material& 
                          "'kappa' reaches 0.01, where matter is opaque; a dielectric's stays below it, the type "
                          "'smooth' may have any");
   read_inside(context, object, material);
-  read_roughness(context, object, material);
-  if (material.thin != 0 && std::max(material.alpha_x, material.alpha_y) >= smooth_alpha)
+  read_varying_roughness(context, object, material);
+  const bool varies = material.alpha_x_texture != no_index || material.alpha_y_texture != no_index;
+  if (material.thin != 0 && (varies || std::max(material.alpha_x, material.alpha_y) >= smooth_alpha))
     context.reader.error(*object.find("roughness"), "'thin' and 'roughness' exclude each other");
 }
 
@@ -149,7 +187,10 @@ void read_mix(SceneContext& context, const JsonObject& object, Material& materia
   };
   material.mix.first = part("first");
   material.mix.second = part("second");
-  material.mix.amount = static_cast<float>(object.number("amount", unit_interval, 0.5));
+  if (!object.has("amount")) return;
+  const NumberOrTexture amount = read_number_or_texture(context, *object.find("amount"), "amount", unit_interval);
+  material.mix.amount = amount.number;
+  material.mix.amount_texture = amount.texture;
 }
 
 // pbrt's coat.
@@ -167,11 +208,7 @@ void read_layered(SceneContext& context, const JsonObject& object, Material& mat
   layer.max_depth = object.integer("max_depth", 0, deepest, layer.max_depth);
 }
 
-}  // namespace
-
-std::optional<Material> read_material(SceneContext& context, const Json::Value& value) {
-  const JsonObject object(context.reader, value, "material");
-  if (!object.is_valid()) return std::nullopt;
+Material read_kind(SceneContext& context, const JsonObject& object) {
   Material material;
   if (object.type() == "diffuse") {
     material.kind = MaterialKind::diffuse;
@@ -181,6 +218,10 @@ std::optional<Material> read_material(SceneContext& context, const Json::Value& 
   if (object.type() == "rough") {
     material.kind = MaterialKind::rough;
     read_rough(context, object, material);
+    return material;
+  }
+  if (object.type() == "interface") {
+    material.kind = MaterialKind::interface;
     return material;
   }
   if (object.type() == "mirror") return mirror(context.scene.spectra);
@@ -206,6 +247,16 @@ std::optional<Material> read_material(SceneContext& context, const Json::Value& 
     material.kind = MaterialKind::dielectric;
     read_dielectric(context, object, material);
   }
+  return material;
+}
+
+}  // namespace
+
+std::optional<Material> read_material(SceneContext& context, const Json::Value& value) {
+  const JsonObject object(context.reader, value, "material");
+  if (!object.is_valid()) return std::nullopt;
+  Material material = read_kind(context, object);
+  read_bump(context, object, material);
   return material;
 }
 

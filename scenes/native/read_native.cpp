@@ -26,6 +26,7 @@ void read_scene_object(SceneContext& context, const Json::Value& root) {
   if (const Json::Value* meshes = object.find("meshes")) read_meshes(context, *meshes);
   if (const Json::Value* curves = object.find("curves")) read_curves(context, *curves);
   if (const Json::Value* materials = object.find("materials")) read_materials(context, *materials);
+  if (const Json::Value* media = object.find("media")) read_media(context, *media);
   if (const Json::Value* entities = object.find("entities")) read_entities(context, *entities);
   check_unused_spectra(context);
 }

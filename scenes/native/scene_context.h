@@ -18,6 +18,7 @@ enum class Quantity : uint8_t {
   brdf,         // at least 0; keeps its end values
   eta,          // above 0; keeps its end values
   kappa,        // at least 0; keeps its end values
+  coefficient,  // at least 0; keeps its end values
   light,        // at least 0; zero outside
 };
 
@@ -50,6 +51,7 @@ struct SceneContext {
   std::string texture_being_read;
   std::map<std::tuple<std::string, double, ColorSpace>, std::optional<ImageId>> images;  // by path, gamma and space
   std::map<std::string, NamedEntity> entities;                                           // materials too
+  std::map<std::string, Entity> media;
 
   float metres(double length) const { return static_cast<float>(length * metres_per_unit); }
   Source source_of(const Json::Value& value) const { return {file, reader.document().at(value).line}; }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "engine/film/bands.h"
 #include "scenes/native/transforms.h"
 
@@ -67,6 +69,8 @@ RenderSettings read_settings(const SceneContext& context, const Json::Value& val
   settings.max_depth = object.integer("max_depth", 0, 0xffffffffu, settings.max_depth);
   settings.integrator =
       static_cast<Integrator>(object.choice("integrator", integrator_names, static_cast<size_t>(settings.integrator)));
+  settings.occlusion_distance =
+      context.metres(object.number("occlusion_distance", positive, std::numeric_limits<double>::infinity()));
   settings.shadows = object.boolean("shadows", settings.shadows);
   settings.seed = object.integer("seed", 0, 0xffffffffu, settings.seed);
   settings.exposure_stops = object.number_f("exposure", stops, settings.exposure_stops);

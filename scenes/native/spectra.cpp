@@ -20,6 +20,7 @@ const Range& range_of(Quantity quantity) {
     case Quantity::eta: return positive;
     case Quantity::brdf:
     case Quantity::kappa:
+    case Quantity::coefficient:
     case Quantity::light: return not_negative;
     case Quantity::any: break;
   }

@@ -4,6 +4,7 @@
 #include "scenes/images/read_image.h"
 #include "scenes/native/components.h"
 #include "scenes/native/spectra.h"
+#include "scenes/native/varying.h"
 
 namespace metamer {
 namespace {
@@ -26,6 +27,7 @@ constexpr Pattern patterns[] = {{"coordinate", TextureKind::coordinate},
                                 {"wrinkled", TextureKind::wrinkled},
                                 {"windy", TextureKind::windy},
                                 {"marble", TextureKind::marble}};
+constexpr std::string_view channel_names[] = {"average", "red", "green", "blue", "alpha"};
 
 TextureId add_texture(SceneContext& context, const Texture& texture) {
   context.scene.textures.push_back(texture);
@@ -62,6 +64,10 @@ class TextureReader {
       texture_.a = operand("a", texture_.is_number != 0, 1);
       texture_.b = operand("b", texture_.is_number != 0, 0);
       mapping();
+    } else if (object_.type() == "square_root") {
+      texture_.kind = TextureKind::square_root;
+      texture_.is_number = 1;
+      texture_.a = operand("a", true, 0);
     } else if (object_.type() == "scale") {
       texture_.kind = TextureKind::scale;
       texture_.a = operand("a", texture_.is_number != 0, 1);
@@ -177,6 +183,9 @@ class TextureReader {
     texture_.kind = TextureKind::image;
     texture_.wrap = static_cast<TextureWrap>(object_.choice("wrap", wrap_names, 0));
     texture_.nearest = static_cast<uint32_t>(object_.choice("filter", filter_names, 0));
+    texture_.channel = static_cast<TextureChannel>(object_.choice("channel", channel_names, 0));
+    if (object_.has("channel") && texture_.is_number == 0)
+      reader_.error(*object_.find("channel"), "'channel' goes with 'number' only: reflectances have all colours");
     texture_.invert = object_.boolean("invert", false) ? 1 : 0;
     texture_.scale = object_.number_f("scale", any_number, 1);
     mapping();
@@ -198,22 +207,14 @@ class TextureReader {
     return encoding;
   }
 
-  // Decoded once for each encoding and colour space.
   std::optional<ImageId> shared_image() {
     const ImageEncoding decoded = encoding();
     const auto space = static_cast<ColorSpace>(object_.choice("space", color_space_names(), 0));
     if (!object_.has("image")) return std::nullopt;  // reported
-    const Json::Value& value = *object_.find("image");
-    const std::string file = reader_.text(value, "image");
-    if (file.empty()) return std::nullopt;
-    const std::string path = resolve_path(file, reader_.document().path());
-    const auto [known, is_new] = context_.images.try_emplace({path, decoded.gamma, space}, std::nullopt);
-    if (!is_new) return known->second;
-    Image image;
-    if (!read_image(path, reader_.document().at(value), image, reader_.diagnostics(), decoded)) return std::nullopt;
-    image.color_space = space;
-    context_.scene.images.push_back(std::move(image));
-    return known->second = static_cast<ImageId>(context_.scene.images.size() - 1);
+    const auto id = read_shared_image(context_, *object_.find("image"), "image", decoded.gamma, space);
+    if (id && texture_.channel == TextureChannel::alpha && context_.scene.images[*id].alpha.empty())
+      reader_.error(*object_.find("channel"), "the image has no alpha, or one that is 1 everywhere");
+    return id;
   }
 
   SceneContext& context_;

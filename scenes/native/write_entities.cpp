@@ -76,6 +76,7 @@ JsonText write_geometry(WriteContext& context, const Geometry& geometry) {
       break;
   }
   if (geometry.flip_normal != 0) object.add("flip_normal", JsonText::boolean(true));
+  if (geometry.alpha_texture != no_index) object.add("alpha", context.texture(geometry.alpha_texture));
   return object;
 }
 
@@ -139,7 +140,7 @@ class EntityWriter {
     };
     append_all(registry_.table<Camera>().owners(), [](Entity) { return true; });
     const auto only_places = [&](Entity entity) {
-      return !registry_.has<Geometry>(entity) && !registry_.has<Light>(entity) &&
+      return !registry_.has<Geometry>(entity) && !registry_.has<Light>(entity) && !registry_.has<Medium>(entity) &&
              (!registry_.has<Material>(entity) || is_marked(is_parent_, entity));
     };
     std::vector<Entity> places;
@@ -201,6 +202,8 @@ class EntityWriter {
     if (registry_.has<Light>(entity)) object.add("light", write_light(context_, registry_.get<Light>(entity)));
     const Visibility visibility = registry_.get<Visibility>(entity);
     if (visibility.mask != visible_to_all) object.add("visibility", write_visibility(visibility));
+    const MediumSlot media = registry_.get<MediumSlot>(entity);
+    if (!media.inside.is_null() || !media.outside.is_null()) object.add("media", write_medium_slot(context_, media));
     return object;
   }
 

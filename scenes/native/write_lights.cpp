@@ -60,7 +60,7 @@ class LightWriter {
     JsonText corners = JsonText::array();
     const glm::dvec3 corner(light_.portal_corner), across = corner + glm::dvec3(light_.portal_x);
     const glm::dvec3 up(light_.portal_y);
-    for (const glm::dvec3& point : {corner, across, across + up, corner + up})
+    for (const glm::dvec3& point : {corner, corner + up, across + up, across})
       corners.add(JsonText::numbers(std::array{point.x, point.y, point.z}));
     object_.add("portal", std::move(corners));
   }

@@ -10,6 +10,16 @@ class MaterialWriter {
   MaterialWriter(WriteContext& context, const Material& material) : context_(context), material_(material) {}
 
   JsonText write() {
+    write_kind();
+    if (material_.displacement != no_index) object_.add("displacement", context_.texture(material_.displacement));
+    if (material_.normal_map != no_index)
+      object_.add("normal_map",
+                  JsonText::string(context_.folder + "/" + context_.image_file(material_.normal_map).name));
+    return object_;
+  }
+
+ private:
+  JsonText write_kind() {
     switch (material_.kind) {
       case MaterialKind::diffuse: return diffuse();
       case MaterialKind::conductor: return conductor();
@@ -20,12 +30,12 @@ class MaterialWriter {
       case MaterialKind::layered: return layered();
       case MaterialKind::diffuse_transmission: return diffuse_transmission();
       case MaterialKind::mix: return mix();
+      case MaterialKind::interface: type("interface"); return object_;
       case MaterialKind::hair: context_.mistakes.push_back("a material of kind hair"); break;
     }
     return JsonText::object();
   }
 
- private:
   JsonText diffuse() {
     type("diffuse");
     reflectance();
@@ -34,8 +44,12 @@ class MaterialWriter {
 
   JsonText conductor() {
     type("conductor");
-    spectrum("eta", material_.eta);
-    spectrum("kappa", material_.kappa);
+    if (material_.reflectance_texture != no_index) {
+      reflectance();
+    } else {
+      spectrum("eta", material_.eta);
+      spectrum("kappa", material_.kappa);
+    }
     roughness();
     fresnel();
     return object_;
@@ -99,7 +113,7 @@ class MaterialWriter {
     type("mix");
     object_.add("first", JsonText::string(context_.material_names[material_.mix.first.index]));
     object_.add("second", JsonText::string(context_.material_names[material_.mix.second.index]));
-    object_.add("amount", JsonText::number(material_.mix.amount));
+    object_.add("amount", number_or_texture(material_.mix.amount, material_.mix.amount_texture));
     return object_;
   }
 
@@ -109,7 +123,16 @@ class MaterialWriter {
     object_.add(key, texture != no_index ? context_.texture(texture) : context_.spectra.write_reflectance(id));
   }
   void reflectance() { albedo("reflectance", material_.reflectance_texture, material_.reflectance); }
+  JsonText number_or_texture(float number, TextureId texture) {
+    return texture != no_index ? context_.texture(texture) : JsonText::number(number);
+  }
   void roughness() {
+    if (material_.alpha_x_texture != no_index || material_.alpha_y_texture != no_index) {
+      object_.add("roughness", JsonText::array()
+                                   .add(number_or_texture(material_.alpha_x, material_.alpha_x_texture))
+                                   .add(number_or_texture(material_.alpha_y, material_.alpha_y_texture)));
+      return;
+    }
     if (material_.alpha_x == 0 && material_.alpha_y == 0) return;
     if (material_.alpha_x == material_.alpha_y)
       object_.add("roughness", JsonText::number(material_.alpha_x));

@@ -37,7 +37,7 @@ std::string file_stem(const std::string& called, std::string_view fallback) {
 }
 
 bool same_pixels(const Image& a, const Image& b) {
-  return a.width == b.width && a.height == b.height && a.rgb == b.rgb;
+  return a.width == b.width && a.height == b.height && a.rgb == b.rgb && a.alpha == b.alpha;
 }
 
 // Whether the file that the image is called after still holds its pixels if it is decoded so.
@@ -51,12 +51,14 @@ bool is_file(const Image& image, const ImageEncoding& encoding) {
 JsonText scene_text(WriteContext& context) {
   JsonText settings = write_settings(context.scene.settings);
   JsonText materials = write_materials(context);
+  JsonText media = write_media(context);
   JsonText entities = write_entities(context);
   JsonText root = JsonText::object().break_lines();
   root.add("metamer", JsonText::integer(1)).add("settings", std::move(settings));
   if (!context.spectra.definitions().empty()) root.add("spectra", context.spectra.definitions());
   if (!context.texture_definitions.empty()) root.add("textures", context.texture_definitions);
   if (!materials.empty()) root.add("materials", std::move(materials));
+  if (!media.empty()) root.add("media", std::move(media));
   if (!context.mesh_definitions.empty()) root.add("meshes", context.mesh_definitions);
   if (!context.curve_definitions.empty()) root.add("curves", context.curve_definitions);
   return root.add("entities", std::move(entities));
@@ -142,7 +144,8 @@ const ImageFile& WriteContext::image_file(ImageId id) {
   for (const ImageFile& known : images)
     if (known.id == id) return known;
   const Image& image = scene.images[id];
-  const bool is_srgb = is_file(image, {}), is_linear = !is_srgb && is_file(image, {.gamma = 1});
+  const bool is_srgb = is_file(image, {.allows_negative = true});
+  const bool is_linear = !is_srgb && is_file(image, {.gamma = 1, .allows_negative = true});
   const bool is_copy = is_srgb || is_linear;
   const std::string ending = is_copy ? file_extension(image.name) : "exr";
   const std::string name = file_names.take(file_stem(image.name, "image")) + "." + ending;

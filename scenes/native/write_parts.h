@@ -46,7 +46,7 @@ struct WriteContext {
   std::string folder;  // of the side files, as the scene file names it
   SpectrumWriter spectra{scene.spectra};
   UniqueNames entity_names{' '}, file_names{'-'};
-  std::vector<std::string> material_names, names;  // by entity index; empty: none
+  std::vector<std::string> material_names, names, medium_names;  // by entity index; empty: none
   JsonText mesh_definitions = JsonText::object().break_lines();
   std::map<MeshId, std::string> mesh_names;  // those that were asked for
   JsonText texture_definitions = JsonText::object().break_lines();
@@ -72,6 +72,9 @@ JsonText write_settings(const RenderSettings& settings);
 JsonText write_materials(WriteContext& context);
 std::string_view mapping_name(ImageMapping mapping);
 JsonText write_light(WriteContext& context, const Light& light);
+// Every Medium likewise; then what is on both sides of a surface.
+JsonText write_media(WriteContext& context);
+JsonText write_medium_slot(const WriteContext& context, const MediumSlot& slot);
 // All entities that are more than a material, in an order that keeps the order of shapes, of lights and of cameras.
 JsonText write_entities(WriteContext& context);
 

@@ -15,6 +15,17 @@ std::string_view wrap_name(TextureWrap wrap) {
   return {};
 }
 
+std::string_view channel_name(TextureChannel channel) {
+  switch (channel) {
+    case TextureChannel::average: return "average";
+    case TextureChannel::red: return "red";
+    case TextureChannel::green: return "green";
+    case TextureChannel::blue: return "blue";
+    case TextureChannel::alpha: return "alpha";
+  }
+  return {};
+}
+
 JsonText write_mapping(const TextureMapping& mapping) {
   using Kind = TextureMapping::Kind;
   JsonText object = JsonText::object();
@@ -135,6 +146,8 @@ class TextureWriter {
     if (texture_.nearest != 0) object_.add("filter", JsonText::string("nearest"));
     if (texture_.scale != 1) object_.add("scale", JsonText::number(texture_.scale));
     if (texture_.invert != 0) object_.add("invert", JsonText::boolean(true));
+    if (texture_.channel != TextureChannel::average)
+      object_.add("channel", JsonText::string(channel_name(texture_.channel)));
     mapping();
   }
 

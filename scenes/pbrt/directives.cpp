@@ -68,15 +68,12 @@ void use_named_material(Reader& reader, Tokenizer& tokens, std::string_view dire
   if (name) reader.state.material = named_material(reader, *name, source).entity;
 }
 
-void make_named_medium(Reader& reader, std::string_view, Parameters& parameters) {
-  parameters.ignore_the_rest();
-  reader.messages.warning_once("media", parameters.source(), "media are not supported yet; space is empty");
-}
-
 void medium_interface(Reader& reader, Tokenizer& tokens, std::string_view directive, Source source) {
-  if (!read_string(reader, tokens, directive, source)) return;
-  if (tokens.peek().kind == TokenKind::string) tokens.next();
-  reader.messages.warning_once("media", source, "media are not supported yet; space is empty");
+  const auto inside = read_string(reader, tokens, directive, source);
+  if (!inside) return;
+  const bool has_outside = tokens.peek().kind == TokenKind::string;
+  const auto outside = has_outside ? read_string(reader, tokens, directive, source) : inside;
+  if (outside) use_media(reader, *inside, *outside, source);
 }
 
 // Texture "name" "spectrum" "kind" parameters.

@@ -172,9 +172,8 @@ Entity read_material(Reader& reader, std::string_view kind, Parameters& paramete
   } else if (kind == "thindielectric") {
     read_thin_dielectric(reader, parameters, material);
   } else if (kind == "interface" || kind == "none" || kind.empty()) {
+    material.kind = MaterialKind::interface;
     reader.interface_materials.push_back(entity);
-    reader.messages.warning_once("interface", parameters.source(),
-                                 "material \"interface\": media are not supported yet; shapes of it are left out");
   } else {
     read_unsupported(reader, kind, parameters, material);
   }

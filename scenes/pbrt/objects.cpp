@@ -1,4 +1,5 @@
-// What can only be done when the whole file is known: instances of objects, and shapes that only separate media.
+// What can only be done when the whole file is known: instances of objects, and shapes of interface material that
+// separate nothing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,6 +43,7 @@ void place(Reader& reader, Placed& placed, const ShapeRecord& shape) {
   registry.set(entity, shape.source);
   registry.set(entity, Name{placed.name});
   if (!shape.material.is_null()) registry.set(entity, MaterialSlot{shape.material});
+  if (separates(shape.media)) registry.set(entity, shape.media);
 }
 
 }  // namespace
@@ -67,8 +69,9 @@ void drop_interfaces(Reader& reader) {
   Registry& registry = reader.scene.registry;
   std::vector<Entity> shapes;
   registry.each<MaterialSlot>([&](Entity entity, uint32_t) {
-    if (std::binary_search(reader.interface_materials.begin(), reader.interface_materials.end(),
-                           registry.get<MaterialSlot>(entity).material)) {
+    const bool is_seen = registry.has<MediumSlot>(entity) || registry.has<Light>(entity);
+    if (!is_seen && std::binary_search(reader.interface_materials.begin(), reader.interface_materials.end(),
+                                       registry.get<MaterialSlot>(entity).material)) {
       shapes.push_back(entity);
     }
   });

@@ -57,6 +57,7 @@ void finish(Reader& reader, Source whole_file) {
   }
   report_open_blocks(reader);
   report_unmade_materials(reader);
+  report_unmade_media(reader);
   place_instances(reader);
   drop_interfaces(reader);
   reader.scene.settings.sensor_scale = static_cast<float>(reader.exposure_seconds * reader.iso / 100);

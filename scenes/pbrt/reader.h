@@ -44,6 +44,7 @@ struct GraphicsState {
   bool reverse_orientation = false;
   ColorSpace color_space = ColorSpace::srgb;
   Entity material;
+  MediumSlot media;
   AreaLight area_light;
   ParameterPointers attributes[std::size(attribute_targets)];  // into Reader::attribute_values; no name twice
 };
@@ -68,11 +69,18 @@ struct NamedMaterial {
   bool defined = false;
 };
 
+struct NamedMedium {
+  Entity entity;
+  Source first_use;
+  bool defined = false;
+};
+
 // A shape as it was said, not yet an entity: ObjectInstance makes several of one.
 struct ShapeRecord {
   Geometry geometry;
   TransformPair transforms;
   Entity material;
+  MediumSlot media;
   Source source;
 };
 
@@ -104,6 +112,7 @@ struct Reader {
   std::map<std::string, TransformPair> coordinate_systems = {};
   double motion_start = 0, motion_end = 1;  // seconds
   std::map<std::string, NamedMaterial> materials = {};
+  std::map<std::string, NamedMedium> media = {};
   std::vector<Entity> interface_materials = {};
   // Nothing where a texture could not be made, which has been said.
   std::map<std::string, std::optional<TextureId>> spectrum_textures = {}, float_textures = {};
@@ -179,6 +188,13 @@ void read_bump(Reader& reader, Parameters& parameters, Material& material);
 // materials.cpp
 Entity read_material(Reader& reader, std::string_view kind, Parameters& parameters, Entity entity);
 
+// media.cpp
+void make_named_medium(Reader& reader, std::string_view name, Parameters& parameters);
+// What is inside and outside of the shapes that follow, by name; "": vacuum.
+void use_media(Reader& reader, const std::string& inside, const std::string& outside, Source source);
+// Only a slot with two different media matters to rays.
+inline bool separates(const MediumSlot& media) { return media.inside != media.outside; }
+void report_unmade_media(Reader& reader);
 // Materials may be used before they are made; the entity is the same (materials.cpp).
 NamedMaterial& named_material(Reader& reader, const std::string& name, Source source);
 

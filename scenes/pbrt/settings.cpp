@@ -61,6 +61,8 @@ void add_camera(Reader& reader, const Camera& camera, Source source) {
   reader.coordinate_systems["camera"] = camera_to_world;
   set_place(reader, reader.camera, camera_to_world);
   reader.scene.registry.set(reader.camera, camera);
+  if (!reader.state.media.outside.is_null())
+    reader.scene.registry.set(reader.camera, MediumSlot{{}, reader.state.media.outside});
   reader.scene.registry.set(reader.camera, Name{reader.scene.names.add("camera")});
   reader.scene.registry.set(reader.camera, source);
 }
@@ -151,9 +153,16 @@ constexpr KnownIntegrator known_integrators[] = {{"path", Instead::nothing},
                                                  {"sppm", Instead::same_light},
                                                  {"lightpath", Instead::same_light},
                                                  {"randomwalk", Instead::same_light},
-                                                 {"ambientocclusion", Instead::path},
-                                                 {"ao", Instead::path},
+                                                 {"ambientocclusion", Instead::nothing},
+                                                 {"ao", Instead::nothing},
                                                  {"function", Instead::path}};
+
+void read_ambient_occlusion(Parameters& parameters, RenderSettings& settings) {
+  settings.integrator = Integrator::ambient_occlusion;
+  parameters.boolean("cossample", true);  // noise only
+  if (parameters.has("maxdistance"))
+    settings.occlusion_distance = static_cast<float>(parameters.positive("maxdistance", 1));
+}
 
 }  // namespace
 
@@ -167,7 +176,10 @@ void read_integrator(Reader& reader, std::string_view kind, Parameters& paramete
                           fmt::format("there is no Integrator \"{}\"{}", kind, did_you_mean(kind, all)));
     return parameters.ignore_the_rest();
   }
-  reader.scene.settings.max_depth = static_cast<uint32_t>(parameters.integer("maxdepth", 5, 0));
+  RenderSettings& settings = reader.scene.settings;
+  settings.integrator = Integrator::path;
+  if (kind == "ambientocclusion" || kind == "ao") return read_ambient_occlusion(parameters, settings);
+  settings.max_depth = static_cast<uint32_t>(parameters.integer("maxdepth", 5, 0));
   if (known->instead == Instead::nothing) {
     parameters.string("lightsampler", "bvh");  // how lights are chosen changes noise only
     parameters.boolean("samplelights", true);

@@ -156,7 +156,7 @@ void read_shape(Reader& reader, std::string_view kind, Parameters& parameters) {
                                    "shapes of an object emit no light, as in pbrt; this AreaLightSource does nothing");
     }
     reader.objects[*reader.object].push_back(
-        {shape->geometry, reader.state.transforms(), reader.state.material, parameters.source()});
+        {shape->geometry, reader.state.transforms(), reader.state.material, reader.state.media, parameters.source()});
     return;
   }
   Registry& registry = reader.scene.registry;
@@ -170,6 +170,7 @@ void read_shape(Reader& reader, std::string_view kind, Parameters& parameters) {
   registry.set(entity, shape->geometry);
   registry.set(entity, parameters.source());
   if (!reader.state.material.is_null()) registry.set(entity, MaterialSlot{reader.state.material});
+  if (separates(reader.state.media)) registry.set(entity, reader.state.media);
   if (reader.state.area_light.on && is_curves(shape->geometry.kind)) {
     reader.messages.warning_once("curve light", parameters.source(),
                                  "curves emit no light, as in pbrt; this AreaLightSource does nothing");

@@ -90,7 +90,7 @@ void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
   option("--max-depth", texts.max_depth, "N", "Scattering events on a path; 0 shows only what emits");
   option("--integrator", texts.integrator, "NAME",
          "Which light is followed: local (straight from the light sources to rough surfaces), recursive (also by "
-         "ideal reflection and refraction), path (all of it)");
+         "ideal reflection and refraction), path (all of it); or ambient_occlusion (how open surfaces are)");
   render->add_flag("--no-shadows", texts.no_shadows, "Light sources shine through everything");
   option("--spectral", texts.spectral, "[N]",
          "Record the mean radiance of N bands from 380 to 740 nm too, 36 if N is not given; 0: none");

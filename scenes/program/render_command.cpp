@@ -14,6 +14,7 @@
 #include "scenes/program/signals.h"
 #include "scenes/program/stats.h"
 #include "systems/display_colour.h"
+#include "systems/systems.h"
 #include "systems/write_frame.h"
 
 namespace metamer {
@@ -78,6 +79,9 @@ void tell_result(const FrameReport& report, bool quiet) {
         stderr,
         "metamer: warning: rays entered a fifth medium inside of four {} times; the lowest priority was forgotten\n",
         report.render.counters.lost_media);
+  if (report.render.counters.lost_rays > 0)
+    fmt::print(stderr, "metamer: warning: {} rays met more than {} interfaces between media and end there\n",
+               report.render.counters.lost_rays, most_interfaces);
   const double seconds = report.render.render_seconds;
   const TileRect rendered = rendered_pixels(settings);
   fmt::print(stderr, "metamer: {}x{}, {} samples per pixel in {} on {} thread{} ({} samples/s)\n", rendered.width(),

@@ -11,8 +11,9 @@ namespace metamer {
 namespace {
 
 // In the order of SystemId.
-constexpr std::array system_names = {"camera_rays",  "intersect", "sort",   "surface",  "media", "emission",
-                                     "light_sample", "shade",     "shadow", "roulette", "nodes", "accumulate"};
+constexpr std::array system_names = {"camera_rays", "intersect", "volumes",      "sort",  "surface",
+                                     "media",       "emission",  "light_sample", "shade", "shadow",
+                                     "roulette",    "nodes",     "accumulate"};
 static_assert(system_names.size() == system_count);
 
 double ratio(double a, double b) { return b > 0 ? a / b : 0; }
@@ -42,6 +43,7 @@ Json::Value to_json(const FrameReport& report) {
   json["samples"] = count(report.samples.total);
   json["invalid_samples"] = count(report.invalid_samples);
   json["lost_media"] = count(counters.lost_media);
+  json["lost_rays"] = count(counters.lost_rays);
   json["rays"]["camera"] = count(counters.camera_rays);
   json["rays"]["bounce"] = count(counters.bounce_rays);
   json["rays"]["shadow"] = count(counters.shadow_rays);

@@ -115,4 +115,8 @@ struct ThinShares {
 ThinShares thin_shares(const ThinOptics& optics, std::size_t j, double cos_theta);
 BsdfSample sample_thin(const Direction& wo, const ThinOptics& optics, double u);
 
+// The phase function: see phase-inl.h.
+double eval_phase(double cos_theta, double g);
+Direction sample_phase(double g, double u, double v);
+
 }  // namespace metamer::reference

@@ -33,6 +33,9 @@ SceneBuilder everything(Integrator integrator = Integrator::path) {
   b.scene.curves.push_back(fibre);
   b.add({.kind = ShapeKind::round_curves, .curves = 0}, b.diffuse(0.4));
   b.add({.kind = ShapeKind::ribbons, .curves = 0}, b.diffuse(0.6), moved(0, 0.4, 0) * stretched(1, -0.6, 1));
+  const Entity haze = b.medium(b.named("colorchecker.red"), b.named("colorchecker.green"), 0.4f);
+  b.separate(b.add(mesh(0), b.interface(), moved(0.2, 0.2, 0.8)), haze);
+  b.separate(b.add(sphere(0.2f), b.interface(), moved(0.2, 0.2, 0.8)), {}, haze);
   b.light(LightKind::point, b.named("E"), 0.05f, moved(0, 0.3, 2));
   b.light(LightKind::environment, b.named("D65"), 0.005f);
   Camera camera = perspective(45);

@@ -270,11 +270,18 @@ Answers add_nested(SceneBuilder& b) {
   return without_local(white, exactly(white));
 }
 
+// Nothing to see.
+Answers add_interface(SceneBuilder& b) {
+  plane(b, b.interface());
+  return at_all_levels(exactly(white));
+}
+
 struct Row {
   const char* name;
   Answers (*add)(SceneBuilder&);
 };
 constexpr Row rows[] = {
+    {"interface", add_interface},
     {"diffuse", add_diffuse},
     {"black", add_black},
     {"rough as taught", add_taught},
@@ -315,6 +322,7 @@ TEST(EveryMaterial, ShowsItsAlbedoInAFurnaceAtEveryLevel) {
   std::set<uint32_t> missing;
   for (uint32_t kind = 0; kind < shade_kind_count; ++kind) missing.insert(kind);
   missing.erase(static_cast<uint32_t>(ShadeKind::miss));
+  missing.erase(static_cast<uint32_t>(ShadeKind::phase));  // no surface: volumes_test.cpp
   for (const Row& row : rows)
     for (const Integrator integrator : {Integrator::local, Integrator::recursive, Integrator::path}) {
       SceneBuilder b(16, 16, 0, 64);

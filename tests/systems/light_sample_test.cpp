@@ -169,6 +169,11 @@ void expect_sides_agree(SceneBuilder& b, const glm::dvec3& from, double seen) {
   flush_probes();
   EXPECT_NEAR(total, seen, 0.01);
   EXPECT_NEAR(double(reached_all) / draws_wanted, seen, 0.015);
+  // Of a bin that a sharp edge cuts off to less than its points can see, some draws come to nothing here.
+  double unseen = 0;
+  for (size_t bin = 0; bin < observed.size(); ++bin)
+    if (expected[bin] == 0) unseen += std::exchange(observed[bin], 0.0);
+  EXPECT_LE(unseen, 1e-4 * draws_wanted);
   observed.push_back(draws_wanted - double(reached_all));
   expected.push_back(std::max(0.0, (1 - total) * draws_wanted));
   if (seen == 1) observed.pop_back(), expected.pop_back();
@@ -334,7 +339,7 @@ TEST(LightSample, APortalFromAskew) {
                                  : b.light(LightKind::environment, unit_spectrum, 1);
     Light light = b.scene.registry.get<Light>(sky);
     light.has_portal = 1;
-    const glm::dmat3 turn(turned(40, 1, 0.4, 0.2));
+    const glm::dmat3 turn(turned(33, 1, 0.4, 0.2));
     light.portal_corner = glm::dvec3(-0.3, -1.2, 0.6);
     light.portal_x = turn * glm::dvec3(1.7, 0, 0);
     light.portal_y = turn * glm::dvec3(0, 2.1, 0);

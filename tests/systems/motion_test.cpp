@@ -48,7 +48,7 @@ void expect_edge(const std::vector<double>& cover, const std::function<double(do
 }
 
 Shadows edge(const Motion& motion, bool as_mesh) {
-  Shadows s(16, 256);
+  Shadows s(16, 1024);
   Geometry shape = rectangle(4, 4);
   if (as_mesh) {
     s.b.scene.meshes.push_back(cube_mesh());
@@ -262,7 +262,7 @@ TEST(Motion, ACameraMovesAsTheWorldDoesTheOtherWay) {
 
 TEST(Motion, AMovingCameraBlursALine) {
   // The camera goes to the right by its whole window: an edge becomes the ramp of a moving edge.
-  Shadows s(16, 256);
+  Shadows s(16, 1024);
   s.b.add(rectangle(4, 4), s.b.diffuse(0.0), moved(-2, 0, 0));
   const Entity camera = s.b.scene.registry.table<Camera>().owner(0);
   const Transform t = s.b.scene.registry.get<Transform>(camera);

@@ -92,19 +92,27 @@ TEST(WindowDistribution, IsDrawnAsOftenAsItSays) {
       };
       observed[static_cast<size_t>(bin(s.y, w.y0, w.y1) * bins + bin(s.x, w.x0, w.x1))] += 1;
     }
-    // By 40 x 40 points in each bin; cells' edges fall into some.
+    // The part of each cell in each bin, and the density in its middle.
     double total = 0;
-    constexpr int points = 40;
-    for (int y = 0; y < bins * points; ++y)
-      for (int x = 0; x < bins * points; ++x) {
-        const double across = (x + 0.5) / (bins * points), down = (y + 0.5) / (bins * points);
-        const double pdf = double{window_pdf(distribution, w, static_cast<float>(w.x0 + across * (w.x1 - w.x0)),
-                                             static_cast<float>(w.y0 + down * (w.y1 - w.y0)))};
-        const double share = pdf * (w.x1 - w.x0) * (w.y1 - w.y0) / (bins * points * bins * points);
-        expected[static_cast<size_t>(y / points * bins + x / points)] += share * draws;
+    for (int bin = 0; bin < bins * bins; ++bin)
+      for (int cell = 0; cell < static_cast<int>(width * height); ++cell) {
+        const auto part = [](double low, double high, int at, double from, double to, double* middle) {
+          const double start = std::max(low + (high - low) * at / bins, from),
+                       end = std::min(low + (high - low) * (at + 1) / bins, to);
+          *middle = (start + end) / 2;
+          return std::max(0.0, end - start);
+        };
+        const int column = cell % static_cast<int>(width), row = cell / static_cast<int>(width);
+        double x = 0, y = 0;
+        const double across = part(w.x0, w.x1, bin % bins, double(column) / width, double(column + 1) / width, &x);
+        const double down = part(w.y0, w.y1, bin / bins, double(row) / height, double(row + 1) / height, &y);
+        if (!(across * down > 0)) continue;
+        const double share =
+            across * down * double{window_pdf(distribution, w, static_cast<float>(x), static_cast<float>(y))};
+        expected[static_cast<size_t>(bin)] += share * draws;
         total += share;
       }
-    EXPECT_NEAR(total, 1, 5e-3);
+    EXPECT_NEAR(total, 1, 1e-4);
     for (double& count : expected) count /= total;
     EXPECT_GT(chi_square_test(observed, expected, 300).p_value, chi_square_level);
   }

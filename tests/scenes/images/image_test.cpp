@@ -115,6 +115,40 @@ TEST(Images, ChannelsAreFoundByNameGreyIsSpreadAlphaDropped) {
                           {255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0}, OIIO::TypeDesc::UINT8));
   ASSERT_TRUE(alpha.ok) << alpha.messages;
   EXPECT_EQ(alpha.image.rgb[0], 1);
+  EXPECT_THAT(alpha.image.alpha, testing::ElementsAre(0, 0, 0, 0));
+  const ImageResult opaque =
+      read(write<uint8_t>(folder, "o.png", {"R", "G", "B", "A"},
+                          {255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255}, OIIO::TypeDesc::UINT8));
+  EXPECT_TRUE(opaque.ok && opaque.image.alpha.empty());
+}
+
+TEST(Images, AlphaIsLinearUnlessAskedFor) {
+  const TemporaryFolder folder;
+  const std::string path =
+      write<uint8_t>(folder, "t.png", {"R", "G", "B", "A"}, {0, 0, 0, 128, 0, 0, 0, 255, 0, 0, 0, 0, 0, 0, 0, 128},
+                     OIIO::TypeDesc::UINT8);
+  for (const bool decodes : {false, true}) {
+    Image image;
+    Diagnostics diagnostics;
+    ImageEncoding encoding;
+    encoding.decodes_alpha = decodes;
+    ASSERT_TRUE(read_image(path, {}, image, diagnostics, encoding));
+    ASSERT_EQ(image.alpha.size(), 4u);
+    EXPECT_NEAR(image.alpha[0], decodes ? 0.21586 : 128.0 / 255, 1e-5);  // IEC 61966-2-1
+    EXPECT_EQ(image.alpha[1], 1);
+    EXPECT_EQ(image.alpha[2], 0);
+  }
+}
+
+TEST(Images, MayBeNegativeWhereTheyAreNoLight) {
+  const TemporaryFolder folder;
+  Image image;
+  Diagnostics diagnostics;
+  ImageEncoding encoding;
+  encoding.allows_negative = true;
+  EXPECT_TRUE(
+      read_image(folder.write("a.pfm", pfm("Pf\n2 2\n-1.0\n", {1, 1, 1, -2})), {}, image, diagnostics, encoding));
+  EXPECT_EQ(image.rgb[3], -2);
 }
 
 TEST(Images, RefusesWhatIsNoLight) {

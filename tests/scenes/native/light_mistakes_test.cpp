@@ -56,7 +56,7 @@ TEST(NativeLightMistakes, AreNamedWithWhatWasExpected) {
   EXPECT_THAT(messages_of_light(R"("type": "environment", "nits": 3, "portal": 4)"),
               HasSubstr("four points [x, y, z]"));
   EXPECT_EQ(messages_of_light(R"("type": "projection", "candela": 3, "fov": 180)"),
-            "scene.json:2: error: 'light' has no 'image'\n"
+            "scene.json:2: error: light of type 'projection' lacks the required key 'image'\n"
             "scene.json:2: error: 'fov' is the number 180; expected a number above 0 and below 180\n");
   EXPECT_THAT(messages_of_light(R"("type": "gonometric", "candela": 3)"), HasSubstr("did you mean 'goniometric'"));
   EXPECT_THAT(messages_of_light(R"("type": "sky", "turbidty": 3)"), HasSubstr("did you mean 'turbidity'"));

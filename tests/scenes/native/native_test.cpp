@@ -77,7 +77,7 @@ TEST(Native, ReadsEveryKey) {
   EXPECT_EQ(s.color, ColorMode::spectral);
   EXPECT_EQ(r.scene.meshes.size(), 2u);
   EXPECT_EQ(r.scene.registry.table<Light>().size(), 16u);
-  EXPECT_EQ(r.scene.registry.table<Material>().size(), 18u);
+  EXPECT_EQ(r.scene.registry.table<Material>().size(), 19u);
 
   const auto camera = r.get<Camera>("eye");
   EXPECT_EQ(camera.fov_deg, 40);
@@ -133,6 +133,28 @@ TEST(Native, ReadsEveryKey) {
   EXPECT_EQ(strands.points[3], glm::vec4(0.03f, 0.01f, 0, 0.0015f)) << "half of the width, in metres";
   EXPECT_EQ(strands.segments[1], 3u);
   EXPECT_EQ(strands.normals[6], glm::vec3(0, 0, 1));
+}
+
+TEST(Native, ReadsMediaAndWhereTheyAre) {
+  NativeResult r;
+  ASSERT_TRUE(read_scene(every_key, r.scene, r.diagnostics));
+  const MediumSlot cloud = r.get<MediumSlot>("cloud"), eye = r.get<MediumSlot>("foggy eye");
+  EXPECT_EQ(r.get<Material>("cloud").kind, MaterialKind::interface);
+  EXPECT_EQ(eye.outside, cloud.outside);
+  EXPECT_TRUE(eye.inside.is_null());
+  const Medium smoke = r.scene.registry.get<Medium>(cloud.inside), haze = r.scene.registry.get<Medium>(cloud.outside);
+  EXPECT_NEAR(r.scene.spectra.value(haze.sigma_s, 550), 0.01, 1e-7);
+  EXPECT_EQ(haze.sigma_a, zero_spectrum);
+  EXPECT_EQ(haze.emission, zero_spectrum);
+  EXPECT_EQ(haze.g, 0);
+  EXPECT_NEAR(smoke.scale, 50, 1e-4);  // 0.5 per centimetre
+  EXPECT_EQ(smoke.g, 0.6f);
+  EXPECT_GT(r.scene.spectra.value(smoke.sigma_a, 450), r.scene.spectra.value(smoke.sigma_a, 650));
+  EXPECT_NEAR(r.scene.spectra.value(smoke.emission, 550),
+              r.scene.spectra.value(r.scene.spectra.add_blackbody(1500).id, 550), 1e-9);
+  EXPECT_EQ(smoke.emission_scale, 3.0f);
+  EXPECT_EQ(r.scene.describe(cloud.inside), "'smoke'");
+  EXPECT_NE(r.scene.location(cloud.inside).line, 0u);
 }
 
 TEST(Native, AppliesOperationsFirstToLastAndUnits) {

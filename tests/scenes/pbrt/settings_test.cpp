@@ -79,6 +79,15 @@ TEST(PbrtSettings, FilmSamplerIntegratorAndSeed) {
   EXPECT_EQ(settings("Sampler \"halton\" \"integer seed\" 3").seed, 3u);
 }
 
+TEST(PbrtSettings, AmbientOcclusionIsAnIntegratorOfOurs) {
+  EXPECT_EQ(settings("").integrator, Integrator::path);
+  const RenderSettings s =
+      settings("Integrator \"ambientocclusion\" \"float maxdistance\" 2.5 \"bool cossample\" false");
+  EXPECT_EQ(s.integrator, Integrator::ambient_occlusion);
+  EXPECT_EQ(s.occlusion_distance, 2.5f);
+  EXPECT_TRUE(std::isinf(settings("Integrator \"ao\"").occlusion_distance));
+}
+
 TEST(PbrtSettings, FiltersHaveTheirOwnDefaults) {
   EXPECT_EQ(settings("PixelFilter \"box\"").filter.radius_x, 0.5f);
   const Filter triangle = settings("PixelFilter \"triangle\" \"float yradius\" 3").filter;
@@ -99,8 +108,8 @@ Sampler "zsobol" "string randomization" "none"
 Integrator "bdpt" "integer maxdepth" 3
 Accelerator "bvh" "string splitmethod" "sah"
 Option "wave-Front" true
-MakeNamedMedium "fog" "string type" "homogeneous"
-MediumInterface "fog" ""
+
+
 ColorSpace "rec2020"
 Film "rgb" "float maxcomponentvalue" 10 "string sensor" "canon_eos_5d" "string filename" "x.exr" "float diagonal" 20)");
   EXPECT_TRUE(read.ok);
@@ -117,7 +126,6 @@ Film "rgb" "float maxcomponentvalue" 10 "string sensor" "canon_eos_5d" "string f
           "scene:5: note: Integrator \"bdpt\" is not supported; path tracing looks for the same light",
           "scene:6: note: Accelerator \"bvh\": Embree's is always used",
           "scene:7: note: Option \"wave-Front\" is not supported; there is one renderer",
-          "scene:8: warning: media are not supported yet; space is empty",
           "scene:11: warning: Film \"rgb\": 'sensor' is not supported yet; cie1931 is used",
           "scene:11: note: Film's 'filename' is not used: outputs are named after the scene, or by -o",
           "scene:11: warning: Film \"rgb\": 'maxcomponentvalue' is not supported yet; samples are not clamped",
@@ -164,7 +172,7 @@ TEST(PbrtSettings, StrictAllowsWhatDoesNotChangeThePicture) {
                                "Option \"rendercoordsys\" \"world\"", "Option \"pixelstats\" true",
                                "Option \"msereferenceimage\" \"a.exr\"", "Option \"wavefront\" true"})
     EXPECT_EQ(strict_errors(harmless), 0u) << harmless;
-  for (const char* harmful : {"Integrator \"sppm\"", "Integrator \"ambientocclusion\"", "PixelFilter \"sinc\"",
+  for (const char* harmful : {"Integrator \"sppm\"", "Integrator \"function\"", "PixelFilter \"sinc\"",
                               "Film \"gbuffer\"", "Film \"spectral\"", "Film \"rgb\" \"float maxcomponentvalue\" 2",
                               "Film \"rgb\" \"string sensor\" \"nikon_d850\"", "Option \"forcediffuse\" true",
                               "Film \"rgb\" \"float whitebalance\" 5000", "ColorSpace \"rec2020\" Film \"rgb\""})

@@ -153,12 +153,5 @@ Shape "cilinder")");
                                  "scene:5: error: there is no shape \"cilinder\" (did you mean 'cylinder'?)"));
 }
 
-TEST(PbrtShapes, WhatReplacesTheUnsupportedIsSaid) {
-  const ReadScene read = read_good("Shape \"sphere\" \"float alpha\" 0.5");
-  EXPECT_EQ(read.count<Geometry>(), 1u);
-  EXPECT_THAT(read.messages, testing::ElementsAre("scene:2: warning: Shape \"sphere\": 'alpha' is not supported yet; "
-                                                  "the shape is opaque"));
-}
-
 }  // namespace
 }  // namespace metamer

@@ -15,6 +15,7 @@
 #include "systems/bsdf/diffuse-inl.h"
 #include "systems/bsdf/diffuse_transmission-inl.h"
 #include "systems/bsdf/ggx-inl.h"
+#include "systems/bsdf/phase-inl.h"
 #include "systems/bsdf/rough-inl.h"
 #include "systems/bsdf/rough_dielectric-inl.h"
 #include "systems/bsdf/thin-inl.h"
@@ -264,6 +265,22 @@ std::vector<BsdfResult> SampleCoated(const Coat& coat, const std::vector<BsdfCas
   });
 }
 
+std::vector<BsdfResult> EvalPhase(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) {
+    Results r = nothing();
+    r.pdf = eval_phase(a.wi.z, a.alpha_x);
+    return r;
+  });
+}
+std::vector<BsdfResult> SamplePhase(const std::vector<BsdfCase>& cases) {
+  return run(cases, [](const Arguments& a) {
+    Results r = nothing();
+    r.wi = sample_phase(a.alpha_x, a.u, a.v);
+    r.pdf = eval_phase(r.wi.z, a.alpha_x);
+    return r;
+  });
+}
+
 }  // namespace
 }  // namespace metamer::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -284,6 +301,8 @@ HWY_EXPORT(SampleCoated);
 HWY_EXPORT(EvalRoughDielectric);
 HWY_EXPORT(SampleRoughDielectric);
 HWY_EXPORT(SampleThin);
+HWY_EXPORT(EvalPhase);
+HWY_EXPORT(SamplePhase);
 
 namespace testing {
 std::vector<BsdfResult> run_eval_diffuse(const std::vector<BsdfCase>& cases) {
@@ -327,6 +346,12 @@ std::vector<BsdfResult> run_sample_rough_dielectric(const std::vector<BsdfCase>&
 }
 std::vector<BsdfResult> run_sample_thin(const std::vector<BsdfCase>& cases) {
   return HWY_DYNAMIC_DISPATCH(SampleThin)(cases);
+}
+std::vector<BsdfResult> run_eval_phase(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(EvalPhase)(cases);
+}
+std::vector<BsdfResult> run_sample_phase(const std::vector<BsdfCase>& cases) {
+  return HWY_DYNAMIC_DISPATCH(SamplePhase)(cases);
 }
 }  // namespace testing
 }  // namespace metamer

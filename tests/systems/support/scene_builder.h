@@ -86,6 +86,25 @@ struct SceneBuilder {
     return material;
   }
 
+  Material interface() {
+    Material material;
+    material.kind = MaterialKind::interface;
+    return material;
+  }
+  Entity medium(SpectrumId sigma_a, SpectrumId sigma_s, float g = 0) {
+    const Entity entity = scene.registry.create();
+    Medium medium;
+    medium.sigma_a = sigma_a;
+    medium.sigma_s = sigma_s;
+    medium.g = g;
+    scene.registry.set(entity, medium);
+    return entity;
+  }
+  // The media on both sides of a surface; of a camera, `outside` is what it is in.
+  void separate(Entity surface, Entity inside, Entity outside = {}) {
+    scene.registry.set(surface, MediumSlot{inside, outside});
+  }
+
   Entity place(const glm::dmat4& matrix = glm::dmat4(1)) {
     const Entity entity = scene.registry.create();
     Transform t;

@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/freeze.h"
+
+namespace metamer {
+namespace {
+
+// Free paths that differ by less are the same: single precision tells no more.
+constexpr double same_extinction = 1e-6;
+
+bool check_medium(const Scene& scene, Entity entity, const Medium& medium, const SpectrumSet& known,
+                  Diagnostics& diagnostics) {
+  const size_t before = diagnostics.error_count();
+  const auto error = [&](const std::string& what) {
+    diagnostics.error(scene.location(entity), fmt::format("medium {}: {}", scene.describe(entity), what));
+  };
+  const auto is_amount = [](float x) { return x >= 0 && std::isfinite(x); };
+  if (!is_amount(medium.scale)) error(fmt::format("its scale is {}; expected a number of at least 0", medium.scale));
+  if (!is_amount(medium.emission_scale))
+    error(fmt::format("the scale of its emission is {}; expected a number of at least 0", medium.emission_scale));
+  if (!(medium.g > -1 && medium.g < 1))
+    error(fmt::format("its g is {}; expected a number between -1 and 1, both excluded", medium.g));
+  const std::pair<SpectrumId, const char*> spectra[] = {
+      {medium.sigma_a, "sigma_a"}, {medium.sigma_s, "sigma_s"}, {medium.emission, "emission"}};
+  for (const auto& [id, name] : spectra)
+    if (known.has_negative(id)) error(fmt::format("its {} is negative at some wavelength", name));
+  return diagnostics.error_count() == before;
+}
+
+double mean(const Grid& grid, size_t channel) {
+  double sum = 0;
+  for (size_t i = channel; i < grid.values.size(); i += grid.channels) sum += double{grid.values[i]};
+  return sum * grid.channels / static_cast<double>(grid.values.size());
+}
+
+// What varies in space counts by its means; what is in a file that nothing reads is empty.
+Medium without_grids(const Scene& scene, Entity entity, World& world, Diagnostics& diagnostics) {
+  Medium medium = scene.registry.get<Medium>(entity);
+  if (!scene.registry.has<MediumGrid>(entity)) return medium;
+  const MediumGrid grid = scene.registry.get<MediumGrid>(entity);
+  const auto warn = [&](std::string_view instead) {
+    diagnostics.warning(scene.location(entity),
+                        fmt::format("medium {}: grids are not supported yet; {}", scene.describe(entity), instead));
+  };
+  if (grid.file != no_index) {
+    warn("its file is not read, it is rendered as empty space");
+    return {};
+  }
+  warn("it is rendered as homogeneous, with the means of its grids");
+  const auto tint = [&](GridId id, SpectrumId& spectrum) {
+    if (id == no_index) return;
+    const Grid& colour = scene.grids[id];
+    const Color3 rgb = {mean(colour, 0), mean(colour, 1), mean(colour, 2)};
+    spectrum =
+        world.spectra.product(spectrum, world.spectra.add_rgb(rgb, RgbKind::unbounded, colour.color_space).id).id;
+  };
+  if (grid.density != no_index) medium.scale *= static_cast<float>(mean(scene.grids[grid.density], 0));
+  tint(grid.sigma_a, medium.sigma_a);
+  tint(grid.sigma_s, medium.sigma_s);
+  if (grid.emission != no_index && scene.grids[grid.emission].channels == 3) {
+    tint(grid.emission, medium.emission);
+  } else if (grid.emission != no_index) {
+    medium.emission_scale *= static_cast<float>(mean(scene.grids[grid.emission], 0));
+  }
+  return medium;
+}
+
+// Whether some wavelength is scattered or absorbed sooner than another.
+bool is_chromatic(const Medium& medium, const World& world) {
+  const SpectrumSet& spectra = world.spectra;
+  if (world.settings.color != ColorMode::spectral)
+    return !spectra.is_constant(medium.sigma_a) || !spectra.is_constant(medium.sigma_s);
+  const Samples absorption = spectra.samples(medium.sigma_a), scattering = spectra.samples(medium.sigma_s);
+  double least = absorption[0] + scattering[0], most = least;
+  for (size_t i = 0; i < absorption.size(); ++i) {
+    least = std::min(least, absorption[i] + scattering[i]);
+    most = std::max(most, absorption[i] + scattering[i]);
+  }
+  return most - least > same_extinction * most;
+}
+
+uint32_t add_volume(const Medium& medium, World& world) {
+  VolumeColumns& table = world.volumes;
+  const bool scatters = medium.scale > 0 && world.spectra.max_value(medium.sigma_s) > 0;
+  table.sigma_a.push_back(medium.sigma_a);
+  table.sigma_s.push_back(medium.sigma_s);
+  table.emission.push_back(medium.emission);
+  table.scale.push_back(medium.scale);
+  table.emission_scale.push_back(medium.emission_scale);
+  table.g.push_back(medium.g);
+  table.scatters.push_back(scatters);
+  if (scatters && is_chromatic(medium, world)) world.shares_paths = true;
+  return static_cast<uint32_t>(table.scale.size() - 1);
+}
+
+}  // namespace
+
+std::vector<VolumeSides> build_volumes(const Scene& scene, World& world, Diagnostics& diagnostics) {
+  const Registry& registry = scene.registry;
+  Medium empty;
+  empty.scale = empty.emission_scale = 0;
+  add_volume(empty, world);
+  std::vector<uint32_t> rows;
+  registry.each<Medium>([&](Entity entity, uint32_t) {
+    if (entity.index >= rows.size()) rows.resize(entity.index + 1);
+    const Medium medium = without_grids(scene, entity, world, diagnostics);
+    if (check_medium(scene, entity, medium, world.spectra, diagnostics)) rows[entity.index] = add_volume(medium, world);
+  });
+  const auto row_of = [&](Entity owner, Entity medium) {
+    if (medium.is_null()) return 0u;
+    if (registry.has<Medium>(medium)) return rows[medium.index];
+    diagnostics.error(scene.location(owner),
+                      fmt::format("{} is in {}, which is no medium", scene.describe(owner), scene.describe(medium)));
+    return 0u;
+  };
+  std::vector<VolumeSides> sides;
+  registry.each<MediumSlot>([&](Entity entity, uint32_t) {
+    const MediumSlot slot = registry.get<MediumSlot>(entity);
+    const uint32_t inside = row_of(entity, slot.inside), outside = row_of(entity, slot.outside);
+    if (registry.has<Camera>(entity)) world.camera_volume = outside;
+    if (inside != 0 || outside != 0) world.has_volumes = true;
+    if (inside == outside) return;
+    if (entity.index >= sides.size()) sides.resize(entity.index + 1);
+    sides[entity.index] = {inside, outside};
+  });
+  return sides;
+}
+
+}  // namespace metamer

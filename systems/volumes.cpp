@@ -1,0 +1,218 @@
+// What happens to rays between the surfaces. A ray's way is cut into stretches by the interfaces that it passes;
+// `order` lists the rays that are still on theirs.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "systems/volumes.cpp"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+// Highway's headers come after foreach_target.
+#include "engine/sampling/points-inl.h"
+#include "systems/dimensions.h"
+#include "systems/volumes-inl.h"
+
+#ifndef METAMER_SYSTEMS_VOLUME_RAYS_
+#define METAMER_SYSTEMS_VOLUME_RAYS_
+namespace metamer {
+namespace {
+
+// One kind of rays on their way, and what may happen to them.
+struct VolumeRays {
+  PathStream& paths;
+  HitStream& hits;
+  Slots* slots;     // where the glow goes; null: it does not count
+  bool scatters;    // rays are scattered by chance; else what is scattered is lost
+  uint32_t* order;  // rows of the streams, padded with dead_lane to whole vectors
+  uint32_t count = 0;
+};
+
+}  // namespace
+}  // namespace metamer
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace metamer::HWY_NAMESPACE {
+namespace {
+
+HWY_INLINE void scatter(MF mask, VF v, float* column, VI row) {
+  const VF old = gather(column, row);
+  HWY_ALIGN float values[hn::MaxLanes(FloatTag())];
+  HWY_ALIGN int32_t rows[hn::MaxLanes(FloatTag())];
+  hn::Store(hn::IfThenElse(mask, v, old), FloatTag(), values);
+  hn::Store(row, IntTag(), rows);
+  uint8_t bits[8] = {};
+  hn::StoreMaskBits(FloatTag(), mask, bits);
+  for (uint32_t left = bits[0] | uint32_t{bits[1]} << 8; left != 0; left &= left - 1) {
+    const int lane = __builtin_ctz(left);
+    column[rows[lane]] = values[lane];
+  }
+}
+
+void start_kernel(uint32_t depth, const PathStream& paths, HitStream& hits) {
+  for (size_t i = 0; i < paths.size; i += lane_count()) {
+    const PointKey key = {load(paths.pixel_seed, i), load(paths.index, i)};
+    const VF u = sample_1d(key, splat_u(bounce_dimension(depth, free_path_dimension)));
+    store(hn::Neg(log(hn::Sub(splat(1.0f), u))), hits.depth_left, i);
+    store(hn::Zero(FloatTag()), hits.passed, i);
+    store(hn::Inf(FloatTag()), hits.reach, i);
+  }
+}
+
+void stretch_lanes(const World& world, const VolumeRays& rays, size_t k) {
+  const FloatTag d;
+  const VU ordered = load(rays.order, k);
+  const auto listed = hn::Ne(ordered, splat_u(dead_lane));
+  const VI row = as_index(hn::IfThenElseZero(listed, ordered));
+  const VU volume = hn::IfThenElseZero(listed, gather(rays.paths.volume, row));
+  const MF inside = float_mask(hn::Ne(volume, splat_u(0)));
+  if (hn::AllFalse(d, inside)) return;
+  const VF passed = gather(rays.hits.passed, row);
+  const VF metres = hn::Max(hn::Sub(gather(rays.hits.distance, row), passed), hn::Zero(d));
+  VF lambda_nm[4], throughput[4];
+  for (size_t j = 0; j < 4; ++j) {
+    lambda_nm[j] = gather(rays.paths.lambda_nm[j], row);
+    throughput[j] = gather(rays.paths.throughput[j], row);
+  }
+  const VolumeCoefficients c = volume_coefficients(world, volume, lambda_nm);
+  if (rays.slots != nullptr) {
+    VF radiance[4];
+    glow(world, volume, lambda_nm, c, metres, radiance);
+    const VU slot = gather(rays.paths.slot, row);
+    for (size_t j = 0; j < 4; ++j)
+      add_to_slots(inside, hn::Mul(throughput[j], radiance[j]), rays.slots->radiance[j], slot);
+  }
+  VF factor[4];
+  for (size_t j = 0; j < 4; ++j) factor[j] = exp(hn::Neg(optical_depth(c.extinction[j], metres)));
+  MF scattering = hn::And(inside, float_mask(hn::Ne(gather(world.volumes.scatters.data(), as_index(volume)),
+                                                    splat_u(rays.scatters ? 0u : dead_lane))));
+  if (!rays.scatters) scattering = hn::Lt(metres, hn::Zero(d));  // none
+  if (!hn::AllFalse(d, scattering)) {
+    VF share[4];
+    if (world.shares_paths)
+      for (size_t j = 0; j < 4; ++j) share[j] = gather(rays.paths.share[j], row);
+    const VF depth_left = gather(rays.hits.depth_left, row);
+    const float live = static_cast<float>(live_wavelengths(world.settings));
+    const FreePath path = sample_free_path(c, metres, depth_left, live, world.shares_paths ? share : nullptr);
+    for (size_t j = 0; j < 4; ++j) factor[j] = hn::IfThenElse(scattering, path.factor[j], factor[j]);
+    const MF ends = hn::And(scattering, path.is_scattered);
+    scatter(ends, hn::Add(passed, path.metres), rays.hits.distance, row);
+    scatter(ends, hn::BitCast(d, splat_u(scattered)), reinterpret_cast<float*>(rays.hits.object), row);
+    scatter(scattering, hn::Sub(depth_left, optical_depth(c.extinction[0], metres)), rays.hits.depth_left, row);
+    if (world.shares_paths)
+      for (size_t j = 0; j < 4; ++j) scatter(scattering, share[j], rays.paths.share[j], row);
+  }
+  for (size_t j = 0; j < 4; ++j) scatter(inside, hn::Mul(throughput[j], factor[j]), rays.paths.throughput[j], row);
+}
+
+void stretch_kernel(const World& world, const VolumeRays& rays) {
+  for (size_t k = 0; k < rays.count; k += lane_count()) stretch_lanes(world, rays, k);
+}
+
+// Behind the surfaces in `shade`, which are those of rays.order.
+void cross_kernel(const ShadeStream& shade, const VolumeRays& rays) {
+  for (size_t k = 0; k < rays.count; k += lane_count()) {
+    const VU ordered = load(rays.order, k);
+    const MF listed = is_live(ordered);
+    const VI row = as_index(hn::IfThenElseZero(uint_mask(listed), ordered));
+    const MF inwards = hn::Gt(dot(load(shade.wo, k), load(shade.normal, k)), hn::Zero(FloatTag()));
+    const VU volume = hn::IfThenElse(uint_mask(inwards), load(shade.volumes[0], k), load(shade.volumes[1], k));
+    scatter(listed, hn::BitCast(FloatTag(), volume), reinterpret_cast<float*>(rays.paths.volume), row);
+    scatter(listed, gather(rays.hits.distance, row), rays.hits.passed, row);
+  }
+}
+
+}  // namespace
+}  // namespace metamer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace metamer {
+
+HWY_EXPORT(start_kernel);
+HWY_EXPORT(stretch_kernel);
+HWY_EXPORT(cross_kernel);
+
+namespace {
+
+// The rays among those listed for which `stays` is true, in their order.
+template <class Stays>
+void keep(VolumeRays& rays, const Stays& stays) {
+  uint32_t kept = 0;
+  for (uint32_t k = 0; k < rays.count; ++k)
+    if (stays(rays.order[k])) rays.order[kept++] = rays.order[k];
+  rays.count = kept;
+  for (uint32_t k = kept; k < padded_to_lanes(kept); ++k) rays.order[k] = dead_lane;
+}
+
+void list_all(uint32_t size, VolumeRays& rays) {
+  for (uint32_t i = 0; i < size; ++i) rays.order[i] = i;
+  rays.count = size;
+  keep(rays, [](uint32_t) { return true; });
+}
+
+// The listed rays up to what they meet, on through all interfaces. `mask`: what they see. Returns how many are given
+// up.
+uint32_t follow(const World& world, uint32_t mask, VolumeRays& rays, ShadeStream& shade, double* embree_seconds) {
+  const auto is_at_interface = [&](uint32_t i) {
+    const uint32_t object = rays.hits.object[i];
+    return object < scattered && world.objects.shade_kind[object] == static_cast<uint32_t>(ShadeKind::interface);
+  };
+  for (uint32_t passed = 0;; ++passed) {
+    HWY_DYNAMIC_DISPATCH(stretch_kernel)(world, rays);
+    keep(rays, is_at_interface);
+    if (rays.count == 0) return 0;
+    if (passed == most_interfaces) break;
+    shade.groups = {};
+    const Group all = {0, rays.count};
+    shade.groups[static_cast<size_t>(ShadeKind::interface)] = all;
+    shade.groups[static_cast<size_t>(ShadeKind::miss)] = {all.padded_end(), all.padded_end()};
+    shade.size = all.padded_end();
+    surface(world, rays.paths, rays.hits, rays.order, shade);
+    if (rays.slots != nullptr) emission(world, shade, *rays.slots);
+    HWY_DYNAMIC_DISPATCH(cross_kernel)(shade, rays);
+    intersect_onward(world, rays.paths, rays.order, rays.count, mask, rays.hits, embree_seconds);
+  }
+  for (uint32_t k = 0; k < rays.count; ++k) {
+    for (float* throughput : rays.paths.throughput) throughput[rays.order[k]] = 0;
+    rays.hits.object[rays.order[k]] = no_index;
+  }
+  return rays.count;
+}
+
+}  // namespace
+
+uint32_t volumes(const World& world, uint32_t depth, PathStream& paths, HitStream& hits, uint32_t* order,
+                 ShadeStream& shade, Slots& slots, double* embree_seconds) {
+  VolumeRays rays{paths, hits, &slots, world.settings.integrator == Integrator::path, order};
+  HWY_DYNAMIC_DISPATCH(start_kernel)(depth, paths, hits);
+  list_all(paths.size, rays);
+  return follow(world, depth == 0 ? visible_to_camera : visible_to_bounces, rays, shade, embree_seconds);
+}
+
+uint32_t transmit(const World& world, ShadowStream& shadow, Batch& crossings, double* embree_seconds) {
+  PathStream& paths = crossings.paths;
+  HitStream& hits = crossings.hits;
+  VolumeRays rays{paths, hits, nullptr, false, crossings.order};
+  const auto copy = [&](const auto& from, auto& to) {
+    for (size_t c = 0; c < from.size(); ++c) std::copy_n(from[c], shadow.size, to[c]);
+  };
+  copy(shadow.origin, paths.origin);
+  copy(shadow.direction, paths.direction);
+  copy(shadow.lambda_nm, paths.lambda_nm);
+  copy(shadow.contribution, paths.throughput);
+  std::copy_n(shadow.volume, shadow.size, paths.volume);
+  if (world.has_motion) std::copy_n(shadow.time, shadow.size, paths.time);
+  paths.size = shadow.size;
+  for (uint32_t i = 0; i < shadow.size; ++i) {
+    hits.passed[i] = 0;
+    hits.distance[i] = hits.reach[i] = shadow.t_far[i] / shadow_ray_share;
+    hits.object[i] = no_index;
+  }
+  list_all(shadow.size, rays);
+  keep(rays, [&](uint32_t i) { return shadow.slot[i] != dead_lane; });
+  if (world.has_interfaces)
+    intersect_onward(world, paths, rays.order, rays.count, visible_to_crossings, hits, embree_seconds);
+  const uint32_t lost = follow(world, visible_to_crossings, rays, crossings.shade, embree_seconds);
+  copy(paths.throughput, shadow.contribution);
+  return lost;
+}
+
+}  // namespace metamer
+#endif
