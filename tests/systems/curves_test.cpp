@@ -70,6 +70,10 @@ TEST(Curves, AStraightFlatCurveIsARectangleTurnedToTheRay) {
   for (const glm::dvec3& beside : {glm::dvec3(1, 0.101, 0), {1, -0.101, 0}, {-0.01, 0, 0}, {3.01, 0, 0}})
     EXPECT_FALSE(trace(*world, beside + glm::dvec3(0, 0, 5), {0, 0, -1}).met);
   // Aslant the normal stays perpendicular to the curve and on the side of the ray.
+  // v counts to the left of the tangent for who looks along the ray: there, with z up and the curve to the right, down.
+  const TestHit left = trace(*world, {1, 0.05, 5}, {0, 0, -1});
+  EXPECT_NEAR(left.u, 1.0 / 3, 1e-4);
+  EXPECT_NEAR(left.v, 0.25, 1e-4);
   const TestHit aslant = trace(*world, {0.5, 0, 1}, {1, 0, -1});
   expect_vector(aslant.normal, {0, 0, 1});
   EXPECT_NEAR(aslant.distance, std::sqrt(2), 1e-5);
