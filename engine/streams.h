@@ -25,6 +25,8 @@ enum class ShadeKind : uint32_t {
   rough,
   smooth_coated,
   rough_coated,
+  layered,
+  hair,
   rough_conductor,
   rough_dielectric,
   smooth_conductor,
@@ -35,19 +37,16 @@ enum class ShadeKind : uint32_t {
   interface,  // without optical effect; paths pass it before they are sorted
   miss
 };
-inline constexpr uint32_t shade_kind_count = 14;
+inline constexpr uint32_t shade_kind_count = static_cast<uint32_t>(ShadeKind::miss) + 1;
 // Of objects of several materials: the kind is chosen at every hit, by `sort`.
 inline constexpr uint32_t mixed_kind = shade_kind_count;
 // Rough kinds are lit by light samples, smooth kinds only by what lies in the few directions they answer to. A smooth
 // coat does both: its body is rough, its surface mirrors.
-inline constexpr ShadeKind rough_kinds[] = {ShadeKind::diffuse,
-                                            ShadeKind::diffuse_transmission,
-                                            ShadeKind::rough,
-                                            ShadeKind::smooth_coated,
-                                            ShadeKind::rough_coated,
-                                            ShadeKind::rough_conductor,
-                                            ShadeKind::rough_dielectric,
-                                            ShadeKind::phase};
+inline constexpr ShadeKind rough_kinds[] = {
+    ShadeKind::diffuse,       ShadeKind::diffuse_transmission, ShadeKind::rough,
+    ShadeKind::smooth_coated, ShadeKind::rough_coated,         ShadeKind::layered,
+    ShadeKind::hair,          ShadeKind::rough_conductor,      ShadeKind::rough_dielectric,
+    ShadeKind::phase};
 inline constexpr ShadeKind smooth_kinds[] = {ShadeKind::smooth_conductor, ShadeKind::dielectric,
                                              ShadeKind::thin_dielectric};
 
@@ -144,7 +143,7 @@ struct ShadeStream {
   Columns<float, 3> position;                 // metres; of a ray that left a world with portals, where it came from
   Columns<float, 3> normal;                   // geometric, unit, on the side the shape calls its outside
   Columns<float, 3> shading_normal, tangent;  // unit; tangent only where the world asks for it
-  Columns<float, 2> uv;                       // only where World::needs_uvs
+  Columns<float, 2> uv;                       // only where World::needs_uvs()
   Columns<float, 3> dp_du, dp_dv;             // of the position, as shading sees it; only where the world has bumps
   Columns<float, 3> dn_du, dn_dv;             // of the shading normal; the same
   float* distance;                            // metres from the previous vertex

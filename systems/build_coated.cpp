@@ -10,11 +10,6 @@
 namespace metamer {
 namespace {
 
-// One table serves both of a rough surface's widths: what enters depends little on them.
-double table_alpha(const Material& material) {
-  return std::sqrt(double{std::max(material.alpha_x, least_alpha)} * double{std::max(material.alpha_y, least_alpha)});
-}
-
 // The table's rows are shared by coats that differ in what is under them only.
 CoatRows rows_of(const Material& material, const CoatSurface& surface, const CoatedColumns& coats,
                  const SpectrumSet& spectra, Column<float>& table) {
@@ -43,9 +38,6 @@ bool check_coated(const Scene& scene, Entity entity, const Material& material, D
   // Single precision may round a 1 up.
   if (scene.spectra.has_negative(material.reflectance) || scene.spectra.max_value(material.reflectance) > 1 + 1e-6)
     error("'reflectance' is not from 0 to 1 at every wavelength");
-  const Layer& layer = material.layer;
-  if (!(layer.thickness >= 0 && std::isfinite(layer.thickness)))
-    error("'optical_thickness' is not a number of at least 0");
   return diagnostics.error_count() == errors_before;
 }
 
@@ -56,7 +48,7 @@ MaterialRow add_coated(const Material& material, World& world) {
   Material coat = material;
   if (smooth) coat.alpha_x = coat.alpha_y = 0;
   CoatSurface surface;
-  surface.alpha = smooth ? 0 : table_alpha(coat);
+  surface.alpha = smooth ? 0 : coat_table_alpha(double{coat.alpha_x}, double{coat.alpha_y});
   surface.schlick = material.fresnel == FresnelModel::schlick;
   surface.layered = layered;
   surface.thickness = layered ? double{material.layer.thickness} : 0;

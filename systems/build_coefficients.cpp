@@ -61,6 +61,11 @@ void build_coefficients(World& world) {
     albedo.give(coated->reflectance);
     index.give(coated->eta);
   }
+  albedo.give(world.layered.reflectance);
+  albedo.give(world.layered.albedo);
+  index.give(world.layered.base_eta);
+  index.give(world.layered.base_kappa);
+  index.give(world.hair.sigma_a);
   index.give(world.dielectric.eta);
   index.give(world.dielectric.kappa);
   index.give(world.media.eta);

@@ -203,13 +203,13 @@ MaterialRow add_material(const Material& material, World& world) {
     case MaterialKind::diffuse_transmission: return add_diffuse_transmission(material, world);
     case MaterialKind::conductor: return add_conductor(material, world);
     case MaterialKind::rough: return add_rough(material, world);
-    case MaterialKind::coated:
-    case MaterialKind::layered: return add_coated(material, world);
+    case MaterialKind::coated: return add_coated(material, world);
+    case MaterialKind::layered: return add_layered(material, world);
+    case MaterialKind::hair: return add_hair(material, world);
     case MaterialKind::smooth: return add_smooth(material, world);
     case MaterialKind::interface: return {ShadeKind::interface, 0};
     case MaterialKind::dielectric:
-    case MaterialKind::mix:
-    case MaterialKind::hair: break;
+    case MaterialKind::mix: break;
   }
   return add_dielectric(material, world);
 }
@@ -243,6 +243,8 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
       check_optics(scene, entity, material, diagnostics);
     const bool is_coated = material.kind == MaterialKind::coated || material.kind == MaterialKind::layered;
     if (is_coated && !check_coated(scene, entity, material, diagnostics)) return;
+    if (material.kind == MaterialKind::layered && !check_layered(scene, entity, material, diagnostics)) return;
+    if (material.kind == MaterialKind::hair && !check_hair(scene, entity, material, diagnostics)) return;
     if (material.kind == MaterialKind::mix) return;
     own[entity.index] = add_material(material, world);
     add_bump(scene, material, own[entity.index], world);

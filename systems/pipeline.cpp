@@ -114,6 +114,8 @@ void branch_out(const World& world, uint32_t depth, Batch& batch, StageClock& cl
   push(ShadeKind::smooth_conductor, Branch::reflected);
   shade_coat_mirror(world, batch.shade);
   push(ShadeKind::smooth_coated, Branch::reflected);
+  shade_layered_mirror(world, batch.shade);
+  push(ShadeKind::layered, Branch::reflected);
   const uint32_t last = static_cast<uint32_t>(world.branches > 2 ? Branch::refracted_3 : Branch::refracted);
   for (uint32_t branch = static_cast<uint32_t>(Branch::reflected); branch <= last; ++branch) {
     shade_dielectric(world, depth, static_cast<Branch>(branch), batch.shade);
@@ -166,6 +168,8 @@ void shade_rough_kinds(const World& world, const ShadeWork& work, ShadeStream& s
   shade_rough(world, work, shade, shadow);
   shade_smooth_coated(world, work, shade, shadow);
   shade_rough_coated(world, work, shade, shadow);
+  shade_layered(world, work, shade, shadow);
+  shade_hair(world, work, shade, shadow);
   shade_rough_conductor(world, work, shade, shadow);
   shade_rough_dielectric(world, work, shade, shadow);
   shade_phase(world, work, shade, shadow);

@@ -122,6 +122,8 @@ void shade_diffuse_transmission(const World& world, const ShadeWork& work, Shade
 void shade_rough(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_smooth_coated(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough_coated(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
+void shade_layered(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
+void shade_hair(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough_conductor(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 void shade_rough_dielectric(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow);
 // The phase function of volumes stands for the BSDF.
@@ -137,6 +139,7 @@ enum class Branch : uint32_t { drawn, reflected, refracted, refracted_0, refract
 void shade_smooth_conductor(const World& world, ShadeStream& shade);
 // The mirror image in the surface of smooth coats, `reflected`.
 void shade_coat_mirror(const World& world, ShadeStream& shade);
+void shade_layered_mirror(const World& world, ShadeStream& shade);
 void shade_dielectric(const World& world, uint32_t depth, Branch branch, ShadeStream& shade);
 void shade_thin_dielectric(const World& world, uint32_t depth, Branch branch, ShadeStream& shade);
 

@@ -80,6 +80,7 @@ void textures(const World& world, uint32_t depth, ShadeStream& shade) {
   collect(shade, ShadeKind::diffuse_transmission, world.diffuse_transmission.reflectance_texture, lanes);
   collect(shade, ShadeKind::smooth_coated, world.smooth_coated.texture, lanes);
   collect(shade, ShadeKind::rough_coated, world.rough_coated.texture, lanes);
+  collect(shade, ShadeKind::layered, world.layered.texture, lanes);
   collect(shade, ShadeKind::rough_conductor, world.conductor.texture, lanes);
   collect(shade, ShadeKind::smooth_conductor, world.conductor.texture, lanes);
   spectra(shade.reflectance);

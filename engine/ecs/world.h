@@ -1,5 +1,6 @@
 // The frozen scene: flat, read-only columns for the systems. Made by systems/freeze from a Scene.
 #pragma once
+#include <array>
 #include <memory>
 
 #include "engine/ecs/scene.h"
@@ -69,6 +70,23 @@ struct CoatedColumns {
   Column<uint32_t> first_row, row_stride, last_pair;  // of `albedos`
   Column<float> eta_least, rows_per_eta;
   Column<float> albedos;  // the table: what the surfaces reflect by themselves
+};
+// pbrt's coats that have no closed form: see systems/bsdf/layered-inl.h.
+struct LayeredColumns {
+  Column<float> eta, alpha_x, alpha_y;       // of the layer against the outside, of its surface
+  Column<float> thickness, asymmetry;        // optical; mean cosine of what scatters in it
+  Column<float> max_depth, walks;            // whole numbers
+  Column<uint32_t> albedo, scatters;         // SpectrumId, and whether it is above 0 anywhere
+  Column<uint32_t> conductor;                // 1: the base is one, else diffuse
+  Column<uint32_t> reflectance, texture;     // of a diffuse base, as CoatedColumns
+  Column<uint32_t> base_eta, base_kappa;     // SpectrumId, against vacuum
+  Column<float> base_alpha_x, base_alpha_y;  // 0 where smooth
+};
+// See systems/bsdf/hair.h.
+struct HairColumns {
+  Column<float> eta, variance, width;
+  std::array<Column<float>, 3> sin_tilt, cos_tilt;
+  Column<uint32_t> sigma_a;  // SpectrumId
 };
 struct ConductorColumns {
   Column<uint32_t> eta, kappa;  // SpectrumId
@@ -252,6 +270,8 @@ struct World {
   DiffuseTransmissionColumns diffuse_transmission;
   RoughColumns rough;
   CoatedColumns smooth_coated, rough_coated;
+  LayeredColumns layered;
+  HairColumns hair;
   ConductorColumns conductor;
   DielectricColumns dielectric;
   Column<MixRow> mixes;
@@ -293,8 +313,9 @@ struct World {
   bool has_masks = false;         // some object's alpha is not 1
   bool has_portals = false;       // some environment's light depends on where a ray that leaves the scene came from
   bool has_shape_images = false;  // some shape emits an image
+  bool has_hair = false;
   bool has_textures() const { return !textures.programs.empty() || !textures.normal_maps.empty(); }
-  bool needs_uvs() const { return has_textures() || has_shape_images || has_curves; }
+  bool needs_uvs() const { return has_textures() || has_shape_images || has_curves || has_hair; }
   uint64_t zero_area_triangles = 0;
   std::unique_ptr<Accelerator, void (*)(Accelerator*)> accelerator{nullptr, nullptr};
 };

@@ -90,6 +90,10 @@ bool check_pixels(const Image& image, bool allows_negative, Diagnostics& diagnos
 
 }  // namespace
 
+ImageEncoding texture_encoding(const std::string& path) {
+  return {.allows_negative = true, .decodes_alpha = file_extension(path) == "png"};
+}
+
 bool read_image(const std::string& path, const SourceLocation& named_at, Image& image, Diagnostics& diagnostics,
                 const ImageEncoding& encoding) {
   if (!check_readable(path, named_at, diagnostics)) return false;

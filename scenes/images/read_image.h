@@ -13,6 +13,9 @@ struct ImageEncoding {
   bool decodes_alpha = false;  // like the colours; else alpha is linear
 };
 
+// How the images of textures are read: they may be negative, and as in pbrt the alpha of PNG files is encoded.
+ImageEncoding texture_encoding(const std::string& path);
+
 // Reads EXR, HDR, PFM, PNG, JPEG, TGA and what else OpenImageIO knows as linear RGB from the top row down. Formats of 8
 // or 16 bits an integer channel are decoded, by default from sRGB (IEC 61966-2-1); floating-point ones are linear.
 // Alpha is kept where it is not 1 everywhere; grey fills all three channels. The colour space is the one whose

@@ -5,8 +5,9 @@ namespace {
 
 constexpr bool required = true;
 
-constexpr KeySpec scene[] = {{"$schema"},   {"metamer", required}, {"units"},  {"settings"}, {"spectra"}, {"textures"},
-                             {"materials"}, {"media"},             {"meshes"}, {"curves"},   {"entities", required}};
+constexpr KeySpec scene[] = {{"$schema"},           {"metamer", required}, {"units"}, {"settings"}, {"spectra"},
+                             {"textures"},          {"materials"},         {"media"}, {"meshes"},   {"curves"},
+                             {"entities", required}};
 constexpr KeySpec settings[] = {{"size"},    {"samples"}, {"max_depth"},    {"seed"},         {"integrator"},
                                 {"shadows"}, {"filter"},  {"exposure"},     {"sensor_scale"}, {"spectral"},
                                 {"color"},   {"crop"},    {"pixel_jitter"}, {"shutter"},      {"occlusion_distance"}};
@@ -41,11 +42,15 @@ constexpr KeySpec material_rough[] = {{"type", required}, {"kd"},           {"ks
 constexpr KeySpec material_coated[] = {
     {"type", required}, {"reflectance", required}, {"glass"},     {"eta"}, {"roughness"},
     {"fresnel"},        {"displacement"},          {"normal_map"}};
-constexpr KeySpec material_layered[] = {{"type", required}, {"reflectance", required}, {"glass"},     {"eta"},
-                                        {"roughness"},      {"optical_thickness"},     {"max_depth"}, {"displacement"},
-                                        {"normal_map"}};
+constexpr KeySpec material_layered[] = {
+    {"type", required}, {"reflectance"}, {"base_metal"},   {"base_eta"},          {"base_kappa"}, {"base_roughness"},
+    {"glass"},          {"eta"},         {"roughness"},    {"optical_thickness"}, {"albedo"},     {"asymmetry"},
+    {"max_depth"},      {"walks"},       {"displacement"}, {"normal_map"}};
 constexpr KeySpec material_diffuse_transmission[] = {
     {"type", required}, {"reflectance", required}, {"transmittance", required}, {"displacement"}, {"normal_map"}};
+constexpr KeySpec material_hair[] = {
+    {"type", required}, {"sigma_a", required}, {"beta_m"}, {"beta_n"}, {"tilt"}, {"eta"},
+    {"displacement"},   {"normal_map"}};
 constexpr KeySpec material_mix[] = {{"type", required}, {"first", required}, {"second", required}, {"amount"}};
 constexpr KeySpec material_conductor[] = {{"type", required}, {"metal"},      {"eta"},
                                           {"kappa"},          {"roughness"},  {"fresnel"},
@@ -131,6 +136,7 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"material.coated", material_coated},
                                 {"material.layered", material_layered},
                                 {"material.diffuse_transmission", material_diffuse_transmission},
+                                {"material.hair", material_hair},
                                 {"material.mix", material_mix},
                                 {"material.conductor", material_conductor},
                                 {"material.dielectric", material_dielectric},

@@ -15,17 +15,21 @@ namespace {
 constexpr std::string_view fresnel_names[] = {"exact", "schlick"};  // in the order of FresnelModel
 
 // GGX's alpha itself, one number or one along each tangent.
-void read_roughness(const SceneContext& context, const JsonObject& object, Material& material) {
-  const Json::Value* value = object.find("roughness");
+void read_widths(const SceneContext& context, const JsonObject& object, std::string_view key, float& alpha_x,
+                 float& alpha_y) {
+  const Json::Value* value = object.find(key);
   if (value == nullptr) return;
   std::array<double, 2> alpha{};
   if (value->isArray()) {
-    context.reader.numbers(*value, "roughness", not_negative, alpha);
+    context.reader.numbers(*value, key, not_negative, alpha);
   } else {
-    alpha.fill(context.reader.number(*value, "roughness", not_negative, 0));
+    alpha.fill(context.reader.number(*value, key, not_negative, 0));
   }
-  material.alpha_x = static_cast<float>(alpha[0]);
-  material.alpha_y = static_cast<float>(alpha[1]);
+  alpha_x = static_cast<float>(alpha[0]);
+  alpha_y = static_cast<float>(alpha[1]);
+}
+void read_roughness(const SceneContext& context, const JsonObject& object, Material& material) {
+  read_widths(context, object, "roughness", material.alpha_x, material.alpha_y);
 }
 
 // The same where each of them may be a texture.
@@ -193,11 +197,38 @@ void read_mix(SceneContext& context, const JsonObject& object, Material& materia
   material.mix.amount_texture = amount.texture;
 }
 
+// What is under the layer: a diffuse albedo, or a metal.
+void read_base(SceneContext& context, const JsonObject& object, Material& material) {
+  Layer& layer = material.layer;
+  constexpr std::string_view bases[] = {"reflectance", "base_metal", "base_eta"};
+  const std::string_view base = object.one_of(bases);
+  if (base == "reflectance") read_reflectance(context, object, material);
+  if (base == "base_metal") {
+    const MetalSpectra metal = read_metal(context, *object.find("base_metal"));
+    layer.base_eta = metal.eta;
+    layer.base_kappa = metal.kappa;
+  }
+  if (base == "base_eta") {
+    layer.base_eta = read_spectrum(context, *object.find("base_eta"), "base_eta", Quantity::eta);
+    if (!object.has("base_kappa"))
+      context.reader.error(object.value(), "a layered material with 'base_eta' lacks the required key 'base_kappa'");
+  }
+  if (object.has("base_kappa"))
+    layer.base_kappa = read_spectrum(context, *object.find("base_kappa"), "base_kappa", Quantity::kappa);
+  if (base != "reflectance") layer.base = LayerBase::conductor;
+  for (const std::string_view key : {"base_kappa", "base_roughness"})
+    if (base == "reflectance" && object.has(key))
+      context.reader.error(*object.find(key), fmt::format("'reflectance' and '{}' exclude each other", key));
+  if (base == "base_metal" && object.has("base_kappa"))
+    context.reader.error(*object.find("base_kappa"), "'base_metal' and 'base_kappa' exclude each other");
+  read_widths(context, object, "base_roughness", layer.base_alpha_x, layer.base_alpha_y);
+}
+
 // pbrt's coat.
 void read_layered(SceneContext& context, const JsonObject& object, Material& material) {
-  constexpr uint32_t deepest = 1000000;
+  constexpr uint32_t most = 0x7fffffff;
   material.kind = MaterialKind::layered;
-  read_reflectance(context, object, material);
+  read_base(context, object, material);
   constexpr std::string_view ways[] = {"glass", "eta"};
   const std::string_view way = object.one_of(ways);
   if (way == "glass") material.eta = read_glass(context, *object.find("glass"));
@@ -205,7 +236,22 @@ void read_layered(SceneContext& context, const JsonObject& object, Material& mat
   read_roughness(context, object, material);
   Layer& layer = material.layer;
   layer.thickness = static_cast<float>(object.number("optical_thickness", not_negative, double{layer.thickness}));
-  layer.max_depth = object.integer("max_depth", 0, deepest, layer.max_depth);
+  layer.max_depth = object.integer("max_depth", 0, most, layer.max_depth);
+  layer.walks = object.integer("walks", 1, most, layer.walks);
+  layer.asymmetry = static_cast<float>(object.number("asymmetry", Range{-1, 1, true, true}, 0));
+  if (object.has("albedo"))
+    layer.albedo = read_spectrum(context, *object.find("albedo"), "albedo", Quantity::reflectance);
+}
+
+// A fibre along the tangent; v goes across it.
+void read_hair(SceneContext& context, const JsonObject& object, Material& material) {
+  material.kind = MaterialKind::hair;
+  Hair& hair = material.hair;
+  if (object.has("sigma_a")) hair.sigma_a = read_spectrum(context, *object.find("sigma_a"), "sigma_a", Quantity::kappa);
+  hair.beta_m = static_cast<float>(object.number("beta_m", unit_interval, double{hair.beta_m}));
+  hair.beta_n = static_cast<float>(object.number("beta_n", unit_interval, double{hair.beta_n}));
+  hair.tilt_deg = static_cast<float>(object.number("tilt", Range{-20, 20}, double{hair.tilt_deg}));
+  material.eta = context.scene.spectra.add_constant(object.number("eta", Range{1, largest_float}, 1.55)).id;
 }
 
 Material read_kind(SceneContext& context, const JsonObject& object) {
@@ -227,7 +273,7 @@ Material read_kind(SceneContext& context, const JsonObject& object) {
   if (object.type() == "mirror") return mirror(context.scene.spectra);
   using Read = void (*)(SceneContext&, const JsonObject&, Material&);
   constexpr std::pair<std::string_view, Read> others[] = {
-      {"layered", read_layered}, {"diffuse_transmission", read_sheet}, {"mix", read_mix}};
+      {"layered", read_layered}, {"diffuse_transmission", read_sheet}, {"mix", read_mix}, {"hair", read_hair}};
   for (const auto& [type, read] : others)
     if (object.type() == type) {
       read(context, object, material);

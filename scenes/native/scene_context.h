@@ -49,8 +49,9 @@ struct SceneContext {
   std::map<std::string, MeshId> mesh_files;   // by resolved path: a file is read once
   std::map<std::string, TextureId> textures;  // those read so far
   std::string texture_being_read;
-  std::map<std::tuple<std::string, double, ColorSpace>, std::optional<ImageId>> images;  // by path, gamma and space
-  std::map<std::string, NamedEntity> entities;                                           // materials too
+  std::map<std::tuple<std::string, double, std::optional<ColorSpace>>, std::optional<ImageId>>
+      images;                                   // by path, gamma and space
+  std::map<std::string, NamedEntity> entities;  // materials too
   std::map<std::string, Entity> media;
 
   float metres(double length) const { return static_cast<float>(length * metres_per_unit); }

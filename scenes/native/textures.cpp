@@ -193,25 +193,26 @@ class TextureReader {
   }
 
   // 0: sRGB, else the exponent.
-  ImageEncoding encoding() {
-    ImageEncoding encoding;
+  double gamma() {
+    double gamma = 0;
     const Json::Value* value = object_.find("encoding");
-    if (value == nullptr) return encoding;
+    if (value == nullptr) return gamma;
     if (value->isNumeric() && !value->isBool()) {
-      encoding.gamma = reader_.number(*value, "encoding", positive, 1);
+      gamma = reader_.number(*value, "encoding", positive, 1);
     } else if (value->isString() && value->asString() == "linear") {
-      encoding.gamma = 1;
+      gamma = 1;
     } else if (!value->isString() || value->asString() != "srgb") {
       reader_.expected(*value, "encoding", "'srgb', 'linear' or the exponent of a power");
     }
-    return encoding;
+    return gamma;
   }
 
   std::optional<ImageId> shared_image() {
-    const ImageEncoding decoded = encoding();
-    const auto space = static_cast<ColorSpace>(object_.choice("space", color_space_names(), 0));
+    const double exponent = gamma();
+    std::optional<ColorSpace> space;  // the file's own where it is not given
+    if (object_.has("space")) space = static_cast<ColorSpace>(object_.choice("space", color_space_names(), 0));
     if (!object_.has("image")) return std::nullopt;  // reported
-    const auto id = read_shared_image(context_, *object_.find("image"), "image", decoded.gamma, space);
+    const auto id = read_shared_image(context_, *object_.find("image"), "image", exponent, space);
     if (id && texture_.channel == TextureChannel::alpha && context_.scene.images[*id].alpha.empty())
       reader_.error(*object_.find("channel"), "the image has no alpha, or one that is 1 everywhere");
     return id;

@@ -37,17 +37,18 @@ NumberOrTexture read_number_or_texture(SceneContext& context, const Json::Value&
 }
 
 std::optional<ImageId> read_shared_image(SceneContext& context, const Json::Value& file, std::string_view key,
-                                         double gamma, ColorSpace space) {
+                                         double gamma, std::optional<ColorSpace> space) {
   const std::string name = context.reader.text(file, key);
   if (name.empty()) return std::nullopt;
   const std::string path = resolve_path(name, context.reader.document().path());
   const auto [known, is_new] = context.images.try_emplace({path, gamma, space}, std::nullopt);
   if (!is_new) return known->second;
   Image image;
-  const ImageEncoding encoding{.gamma = gamma, .allows_negative = true};
+  ImageEncoding encoding = texture_encoding(path);
+  encoding.gamma = gamma;
   if (!read_image(path, context.reader.document().at(file), image, context.reader.diagnostics(), encoding))
     return std::nullopt;
-  image.color_space = space;
+  image.color_space = space.value_or(image.color_space);
   context.scene.images.push_back(std::move(image));
   return known->second = static_cast<ImageId>(context.scene.images.size() - 1);
 }

@@ -12,9 +12,10 @@ struct NumberOrTexture {
 NumberOrTexture read_number_or_texture(SceneContext& context, const Json::Value& value, std::string_view what,
                                        const Range& range);
 
-// An image file, decoded once for each encoding and colour space; nothing where it is wrong, which is reported.
+// An image file, decoded once for each encoding and colour space (the file's own if none is given); nothing where it is
+// wrong, which is reported.
 std::optional<ImageId> read_shared_image(SceneContext& context, const Json::Value& file, std::string_view key,
-                                         double gamma, ColorSpace space);
+                                         double gamma, std::optional<ColorSpace> space);
 
 // The keys `displacement` and `normal_map` of a material.
 void read_bump(SceneContext& context, const JsonObject& object, Material& material);

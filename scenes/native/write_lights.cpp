@@ -57,18 +57,18 @@ class LightWriter {
     brightness("environment", "radiance");
     image(true);
     if (light_.has_portal == 0) return;
+    // Corners that give the same edges as differences, in the order of the reader (systems/portal.h).
+    const glm::dvec3 corner(light_.portal_corner), x(light_.portal_x), y(light_.portal_y);
     JsonText corners = JsonText::array();
-    const glm::dvec3 corner(light_.portal_corner), across = corner + glm::dvec3(light_.portal_x);
-    const glm::dvec3 up(light_.portal_y);
-    for (const glm::dvec3& point : {corner, corner + up, across + up, across})
-      corners.add(JsonText::numbers(std::array{point.x, point.y, point.z}));
+    for (const glm::dvec3& p : {corner, corner + y, corner + y + x, corner + x})
+      corners.add(JsonText::numbers(std::array{p.x, p.y, p.z}));
     object_.add("portal", std::move(corners));
   }
 
   void image(bool is_sphere) {
     if (light_.image == no_index) return;
     const Image& image = context_.scene.images[light_.image];
-    object_.add("image", JsonText::string(context_.folder + "/" + context_.image_file(light_.image).name));
+    object_.add("image", JsonText::string(context_.folder + "/" + context_.light_image_file(light_.image).name));
     if (is_sphere) object_.add("mapping", JsonText::string(mapping_name(image.mapping)));
     object_.add("space", JsonText::string(color_space_name(image.color_space)));
   }

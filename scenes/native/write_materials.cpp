@@ -11,10 +11,11 @@ class MaterialWriter {
 
   JsonText write() {
     write_kind();
+    if (material_.kind == MaterialKind::mix) return object_;  // its parts have bumps of their own
     if (material_.displacement != no_index) object_.add("displacement", context_.texture(material_.displacement));
     if (material_.normal_map != no_index)
       object_.add("normal_map",
-                  JsonText::string(context_.folder + "/" + context_.image_file(material_.normal_map).name));
+                  JsonText::string(context_.folder + "/" + context_.texture_image_file(material_.normal_map).name));
     return object_;
   }
 
@@ -31,7 +32,7 @@ class MaterialWriter {
       case MaterialKind::diffuse_transmission: return diffuse_transmission();
       case MaterialKind::mix: return mix();
       case MaterialKind::interface: type("interface"); return object_;
-      case MaterialKind::hair: context_.mistakes.push_back("a material of kind hair"); break;
+      case MaterialKind::hair: return hair();
     }
     return JsonText::object();
   }
@@ -93,12 +94,34 @@ class MaterialWriter {
   }
 
   JsonText layered() {
+    const Layer& layer = material_.layer;
     type("layered");
-    reflectance();
+    switch (layer.base) {
+      case LayerBase::diffuse: reflectance(); break;
+      case LayerBase::conductor:
+        spectrum("base_eta", layer.base_eta);
+        spectrum("base_kappa", layer.base_kappa);
+        widths("base_roughness", layer.base_alpha_x, layer.base_alpha_y);
+        break;
+    }
     spectrum("eta", material_.eta);
-    roughness();
-    object_.add("optical_thickness", JsonText::number(material_.layer.thickness));
-    object_.add("max_depth", JsonText::integer(material_.layer.max_depth));
+    widths("roughness", material_.alpha_x, material_.alpha_y);
+    object_.add("optical_thickness", JsonText::number(layer.thickness));
+    if (layer.albedo != zero_spectrum) spectrum("albedo", layer.albedo);
+    if (layer.asymmetry != 0) object_.add("asymmetry", JsonText::number(layer.asymmetry));
+    object_.add("max_depth", JsonText::integer(layer.max_depth));
+    object_.add("walks", JsonText::integer(layer.walks));
+    return object_;
+  }
+
+  JsonText hair() {
+    const Hair& hair = material_.hair;
+    type("hair");
+    spectrum("sigma_a", hair.sigma_a);
+    object_.add("beta_m", JsonText::number(hair.beta_m));
+    object_.add("beta_n", JsonText::number(hair.beta_n));
+    object_.add("tilt", JsonText::number(hair.tilt_deg));
+    spectrum("eta", material_.eta);
     return object_;
   }
 
@@ -133,11 +156,11 @@ class MaterialWriter {
                                    .add(number_or_texture(material_.alpha_y, material_.alpha_y_texture)));
       return;
     }
-    if (material_.alpha_x == 0 && material_.alpha_y == 0) return;
-    if (material_.alpha_x == material_.alpha_y)
-      object_.add("roughness", JsonText::number(material_.alpha_x));
-    else
-      object_.add("roughness", JsonText::numbers(std::array{material_.alpha_x, material_.alpha_y}));
+    widths("roughness", material_.alpha_x, material_.alpha_y);
+  }
+  void widths(std::string_view key, float x, float y) {
+    if (x == 0 && y == 0) return;
+    object_.add(key, x == y ? JsonText::number(x) : JsonText::numbers(std::array{x, y}));
   }
   void inside() {
     if (material_.priority != 0) object_.add("priority", JsonText::integer(material_.priority));

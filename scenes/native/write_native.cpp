@@ -36,16 +36,13 @@ std::string file_stem(const std::string& called, std::string_view fallback) {
   return has_letter ? stem : std::string(fallback);
 }
 
-bool same_pixels(const Image& a, const Image& b) {
-  return a.width == b.width && a.height == b.height && a.rgb == b.rgb && a.alpha == b.alpha;
-}
-
 // Whether the file that the image is called after still holds its pixels if it is decoded so.
-bool is_file(const Image& image, const ImageEncoding& encoding) {
+bool is_file(const Image& image, const ImageEncoding& encoding, bool with_alpha) {
   Diagnostics ignored;
   Image read;
   return fs::is_regular_file(image.name) && read_image(image.name, {}, read, ignored, encoding) &&
-         same_pixels(read, image);
+         image.width == read.width && image.height == read.height && image.rgb == read.rgb &&
+         (!with_alpha || image.alpha == read.alpha);
 }
 
 JsonText scene_text(WriteContext& context) {
@@ -139,18 +136,30 @@ std::string WriteContext::curves_name(CurvesId id) {
   return curve_names[id] = name;
 }
 
-// A copy where that can be, else (generated images, other encodings) the pixels in an EXR.
-const ImageFile& WriteContext::image_file(ImageId id) {
-  for (const ImageFile& known : images)
-    if (known.id == id) return known;
+const ImageFile& WriteContext::add_image_file(ImageId id, bool is_copy, bool is_linear) {
   const Image& image = scene.images[id];
-  const bool is_srgb = is_file(image, {.allows_negative = true});
-  const bool is_linear = !is_srgb && is_file(image, {.gamma = 1, .allows_negative = true});
-  const bool is_copy = is_srgb || is_linear;
   const std::string ending = is_copy ? file_extension(image.name) : "exr";
   const std::string name = file_names.take(file_stem(image.name, "image")) + "." + ending;
   images.push_back({id, name, is_copy, is_linear});
   return images.back();
+}
+
+// A copy where that can be, else (generated images, other encodings) the pixels in an EXR.
+const ImageFile& WriteContext::texture_image_file(ImageId id) {
+  for (const ImageFile& known : images)
+    if (known.id == id) return known;
+  const Image& image = scene.images[id];
+  ImageEncoding encoding = texture_encoding(image.name);
+  const bool is_srgb = is_file(image, encoding, true);
+  encoding.gamma = 1;
+  const bool is_linear = !is_srgb && is_file(image, encoding, true);
+  return add_image_file(id, is_srgb || is_linear, is_linear);
+}
+
+const ImageFile& WriteContext::light_image_file(ImageId id) {
+  for (const ImageFile& known : images)
+    if (known.id == id) return known;
+  return add_image_file(id, is_file(scene.images[id], {}, false), false);
 }
 
 FileError check_native_target(const std::string& path) {

@@ -57,9 +57,11 @@ struct WriteContext {
   std::vector<ImageFile> images;
   std::vector<std::string> mistakes;  // what the format cannot say
 
-  // The name of a mesh in "meshes", the file of an image: both become side files.
+  // The name of a mesh in "meshes", the file of an image as textures or as lights read it: all become side files.
   std::string mesh_name(MeshId id);
-  const ImageFile& image_file(ImageId id);
+  const ImageFile& texture_image_file(ImageId id);
+  const ImageFile& light_image_file(ImageId id);
+  const ImageFile& add_image_file(ImageId id, bool is_copy, bool is_linear);
   // The name of curves in "curves".
   std::string curves_name(CurvesId id);
   // What stands where the texture is used: {"texture": name}. It goes to the file's "textures".

@@ -137,11 +137,11 @@ class TextureWriter {
 
   void image() {
     type("image");
-    const ImageFile file = context_.image_file(texture_.image);
+    const ImageFile file = context_.texture_image_file(texture_.image);
     object_.add("image", JsonText::string(context_.folder + "/" + file.name));
     if (file.is_linear) object_.add("encoding", JsonText::string("linear"));
-    const ColorSpace space = context_.scene.images[texture_.image].color_space;
-    if (space != ColorSpace::srgb) object_.add("space", JsonText::string(color_space_name(space)));
+    // Without it the file's own counts.
+    object_.add("space", JsonText::string(color_space_name(context_.scene.images[texture_.image].color_space)));
     if (texture_.wrap != TextureWrap::repeat) object_.add("wrap", JsonText::string(wrap_name(texture_.wrap)));
     if (texture_.nearest != 0) object_.add("filter", JsonText::string("nearest"));
     if (texture_.scale != 1) object_.add("scale", JsonText::number(texture_.scale));

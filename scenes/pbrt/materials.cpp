@@ -90,7 +90,7 @@ void read_unsupported(Reader& reader, std::string_view kind, Parameters& paramet
   }
   reader.messages.warning_once(
       "material " + std::string(kind), parameters.source(),
-      fmt::format("material \"{}\" is not supported yet; it is rendered as diffuse with reflectance 0.5", kind));
+      fmt::format("material \"{}\" is not supported; it is rendered as diffuse with reflectance 0.5", kind));
 }
 
 }  // namespace
@@ -165,6 +165,10 @@ Entity read_material(Reader& reader, std::string_view kind, Parameters& paramete
     read_dielectric(reader, parameters, material);
   } else if (kind == "coateddiffuse") {
     read_coated_diffuse(reader, parameters, material);
+  } else if (kind == "coatedconductor") {
+    read_coated_conductor(reader, parameters, material);
+  } else if (kind == "hair") {
+    read_hair(reader, parameters, material);
   } else if (kind == "diffusetransmission") {
     read_diffuse_transmission(reader, parameters, material);
   } else if (kind == "mix") {

@@ -24,6 +24,10 @@ MetalIndex read_metal(Reader& reader, Parameters& parameters, std::string_view p
 
 // layered_materials.cpp: pbrt's coats, with their layer.
 void read_coated_diffuse(Reader& reader, Parameters& parameters, Material& material);
+void read_coated_conductor(Reader& reader, Parameters& parameters, Material& material);
+
+// hair.cpp
+void read_hair(Reader& reader, Parameters& parameters, Material& material);
 
 // mixed_materials.cpp
 void read_diffuse_transmission(Reader& reader, Parameters& parameters, Material& material);

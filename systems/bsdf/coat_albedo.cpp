@@ -82,6 +82,11 @@ double rough_coat_albedo(double alpha, double eta, bool schlick, double cos_thet
   });
 }
 
+double coat_table_alpha(double alpha_x, double alpha_y) {
+  if (alpha_x == alpha_y) return std::max(alpha_x, double{smooth_alpha});
+  return std::max(std::sqrt((alpha_x * alpha_x + alpha_y * alpha_y) / 2), double{smooth_alpha});
+}
+
 CoatRows add_coat_rows(const CoatSurface& surface, double eta_least, double eta_most, Column<float>& table) {
   const bool smooth = surface.alpha < double{smooth_alpha};
   const double range = eta_most - eta_least;

@@ -44,6 +44,10 @@ struct CoatSurface {
   double thickness = 0;
 };
 
+// The one width in a table's place for two: the root of their mean square, at least smooth_alpha. What enters an
+// anisotropic surface then is right to 2 %.
+double coat_table_alpha(double alpha_x, double alpha_y);
+
 // Appends the rows for etas in [eta_least, eta_most], eta_least > 0, to the table: at most 0.02 apart, and at most 64.
 // alpha < smooth_alpha: smooth, rows of the average alone. Largest errors of interpolation: average 2e-5, E 1.5e-3,
 // where the etas are not on both sides of 1.

@@ -8,6 +8,7 @@
 #include "systems/bsdf/reference.h"
 #include "systems/bsdf/reference_coat.h"
 #include "tests/support/chi_square.h"
+#include "tests/systems/support/layered_walk.h"
 #include "tests/systems/support/radiances.h"
 
 namespace metamer {
@@ -120,7 +121,7 @@ Answers add_layered(SceneBuilder& b, float alpha_x, float alpha_y) {
   coat.layer.max_depth = 4;
   plane(b, coat);
   Column<float> table;
-  const double width = std::sqrt(double{alpha_x} * double{alpha_y});
+  const double width = alpha_x > 0 ? coat_table_alpha(double{alpha_x}, double{alpha_y}) : 0;
   const CoatRows rows = add_coat_rows({width, false, true, double{0.2f}}, 1.4, 1.7, table);
   const Radiance body = tabulated([&](double nm) {
     const double a = slope_at(nm, 0.2, 0.9), eta = slope_at(nm, 1.7, 1.4);
@@ -133,6 +134,53 @@ Answers add_layered(SceneBuilder& b, float alpha_x, float alpha_y) {
   if (alpha_x > 0) return at_all_levels(on_average(body));
   const Radiance all = [=](double nm) { return body(nm) + coat_fresnel(slope_at(nm, 1.7, 1.4), cos_theta, false); };
   return {on_average(body), on_average(all), on_average(all)};
+}
+// A lossless mirror under a clear coat without thickness: nothing is lost, whatever the angle.
+Answers add_coated_mirror(SceneBuilder& b) {
+  Material coat = b.coated(zero_spectrum, b.constant(1.5));
+  coat.kind = MaterialKind::layered;
+  coat.layer.base = LayerBase::conductor;
+  coat.layer.base_eta = unit_spectrum;
+  coat.layer.base_kappa = b.constant(1e8);
+  coat.layer.thickness = 0;
+  coat.layer.max_depth = 1000;
+  plane(b, coat);
+  return without_local(white, exactly(white));
+}
+// What walks from the viewer bring: the scalar twin's.
+Answers add_coated_rough_metal(SceneBuilder& b) {
+  Material coat = b.coated(zero_spectrum, b.constant(1.5), 0.2f);
+  coat.kind = MaterialKind::layered;
+  coat.layer.base = LayerBase::conductor;
+  coat.layer.base_eta = slope(b, 0.2, 0.4);
+  coat.layer.base_kappa = slope(b, 2, 6);
+  coat.layer.base_alpha_x = coat.layer.base_alpha_y = 0.3f;
+  coat.layer.albedo = slope(b, 0.9, 0.5);
+  coat.layer.thickness = 0.3f;
+  plane(b, coat);
+  const Radiance shown = tabulated([&](double nm) {
+    testing::LayeredWalk walk;
+    walk.conductor = true;
+    walk.surface = {double{0.2f}, double{0.2f}};
+    walk.base = {double{0.3f}, double{0.3f}};
+    walk.n = slope_at(nm, 0.2, 0.4) / 1.5;
+    walk.kappa = slope_at(nm, 2, 6) / 1.5;
+    walk.albedo = slope_at(nm, 0.9, 0.5);
+    walk.thickness = double{0.3f};
+    double sum = 0;
+    constexpr int count = 40000;
+    for (int i = 0; i < count; ++i) sum += walk.sample(viewer).weight / count;
+    return sum;
+  });
+  return at_all_levels(on_average(shown, 0.03));
+}
+// Without absorption all light leaves; meshes as hair are lit on both sides.
+Answers add_white_hair(SceneBuilder& b) {
+  Material hair;
+  hair.kind = MaterialKind::hair;
+  hair.eta = b.constant(1.55);
+  plane(b, hair);
+  return at_all_levels(on_average(white));
 }
 Answers add_smooth_layered(SceneBuilder& b) { return add_layered(b, 0, 0); }
 Answers add_rough_layered(SceneBuilder& b) { return add_layered(b, 0.2f, 0.4f); }
@@ -290,6 +338,9 @@ constexpr Row rows[] = {
     {"rough coat, white", add_rough_coat},
     {"smooth surface of a layer", add_smooth_layered},
     {"rough surface of a layer", add_rough_layered},
+    {"mirror under a coat", add_coated_mirror},
+    {"rough metal under a coat", add_coated_rough_metal},
+    {"white hair", add_white_hair},
     {"sheet", add_sheet},
     {"mix", add_mixed},
     {"perfect mirror", add_perfect_mirror},
@@ -336,7 +387,7 @@ TEST(EveryMaterial, ShowsItsAlbedoInAFurnaceAtEveryLevel) {
       b.scene.settings.samples_per_pixel = answer.exact ? 8 : 1024;
       const std::unique_ptr<World> world = b.freeze();
       for (const uint32_t kind : world->objects.shade_kind) missing.erase(kind);
-      SCOPED_TRACE(testing::Message() << row.name << ", " << integrator_name(integrator));
+      SCOPED_TRACE(::testing::Message() << row.name << ", " << integrator_name(integrator));
       expect_answer(*world, answer);
     }
   EXPECT_EQ(missing, std::set<uint32_t>()) << "kinds without a row";

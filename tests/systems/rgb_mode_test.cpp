@@ -302,6 +302,14 @@ SceneBuilder everything(ColorMode mode) {
   b.add(sphere(0.3f), b.rough(b.named("colorchecker.red"), b.constant(0.2), 30, true), moved(0.1, -0.6, 0.6));
   for (const float alpha : {0.0f, 0.2f})
     b.add(sphere(0.2f), b.coated(b.named("colorchecker.blue"), b.named("BK7"), alpha), moved(2 * alpha, 0.4, -0.8));
+  Material other = b.coated(b.named("colorchecker.blue"), b.constant(1.5));
+  other.transmittance = b.constant(0.2);
+  other.layer.albedo = b.constant(0.3);
+  other.hair.sigma_a = b.constant(0.3);
+  for (const MaterialKind kind : {MaterialKind::layered, MaterialKind::diffuse_transmission, MaterialKind::hair}) {
+    other.kind = kind;
+    b.add(sphere(0.15f), other, moved(0.5 * double(kind) - 3.5, 0.7, -0.6));
+  }
   b.emit(b.add(sphere(0.2f), b.diffuse(0.3), moved(0, 1, 0.5)), b.named("A"), 0.1f);
   b.light(LightKind::point, b.named("E"), 0.05f, moved(0, 0.3, 2));
   b.environment(one_texel({0.2f, 0.5f, 0.9f}, ColorSpace::srgb), 0.1f);
@@ -325,11 +333,26 @@ TEST(RgbMode, ThreadsAndTilesDoNotChangeABit) {
 TEST(RgbMode, NoSpectrumOfAWorldIsLeftWithoutCoefficients) {
   const std::unique_ptr<World> world = everything(ColorMode::rgb).freeze();
   const auto is_given = [&](SpectrumId id) { return std::isfinite(world->spectra.row(id).coefficients[0]); };
-  for (const Column<uint32_t>* ids :
-       {&world->diffuse.reflectance, &world->rough.kd, &world->rough.ks, &world->conductor.eta, &world->conductor.kappa,
-        &world->dielectric.eta, &world->dielectric.kappa, &world->media.eta, &world->media.kappa,
-        &world->smooth_coated.reflectance, &world->smooth_coated.eta, &world->rough_coated.reflectance,
-        &world->rough_coated.eta}) {
+  for (const Column<uint32_t>* ids : {&world->diffuse.reflectance,
+                                      &world->rough.kd,
+                                      &world->rough.ks,
+                                      &world->conductor.eta,
+                                      &world->conductor.kappa,
+                                      &world->dielectric.eta,
+                                      &world->dielectric.kappa,
+                                      &world->media.eta,
+                                      &world->media.kappa,
+                                      &world->diffuse_transmission.reflectance,
+                                      &world->diffuse_transmission.transmittance,
+                                      &world->layered.reflectance,
+                                      &world->layered.albedo,
+                                      &world->layered.base_eta,
+                                      &world->layered.base_kappa,
+                                      &world->hair.sigma_a,
+                                      &world->smooth_coated.reflectance,
+                                      &world->smooth_coated.eta,
+                                      &world->rough_coated.reflectance,
+                                      &world->rough_coated.eta}) {
     EXPECT_FALSE(ids->empty());
     for (const SpectrumId id : *ids) EXPECT_TRUE(is_given(id));
   }

@@ -40,7 +40,7 @@ TEST(NativeLayeredMaterials, LayersAreRead) {
 
 TEST(NativeLayeredMaterials, EveryKeyOfLayersIsChecked) {
   EXPECT_THAT(MaterialsRead("\"m\": {\"type\": \"layered\", \"eta\": 1.5}").messages,
-              HasSubstr("lacks the required key 'reflectance'"));
+              AllOf(HasSubstr("'reflectance'"), HasSubstr("'base_metal'"), HasSubstr("'base_eta'")));
   EXPECT_THAT(MaterialsRead("\"m\": {\"type\": \"layered\", \"reflectance\": 0.5}").messages, HasSubstr("'glass'"));
   EXPECT_THAT(MaterialsRead("\"m\": {\"type\": \"layered\", \"reflectance\": 2, \"eta\": 1.5, \"roughness\": 2,\n"
                             "\"optical_thickness\": -1, \"max_depth\": 0.5}")
@@ -49,6 +49,47 @@ TEST(NativeLayeredMaterials, EveryKeyOfLayersIsChecked) {
                     HasSubstr("'roughness' is the number 2; expected a number from 0 to 1"),
                     HasSubstr("scene.json:3: error: material 'm': 'optical_thickness' is the number -1"),
                     HasSubstr("'max_depth' is the number 0.5")));
+}
+
+TEST(NativeLayeredMaterials, BasesMayBeMetals) {
+  const MaterialsRead read(
+      "\"m\": {\"type\": \"layered\", \"base_metal\": \"Au\", \"base_roughness\": [0.1, 0.2], \"eta\": 1.5, "
+      "\"albedo\": 0.3, \"asymmetry\": -0.5, \"walks\": 3}");
+  EXPECT_EQ(read.messages, "");
+  const Layer layer = read.at(0).layer;
+  EXPECT_EQ(layer.base, LayerBase::conductor);
+  EXPECT_NEAR(read.scene.spectra.value(layer.base_eta, 600), 0.23, 0.05);
+  EXPECT_EQ(layer.base_alpha_x, 0.1f);
+  EXPECT_EQ(layer.base_alpha_y, 0.2f);
+  EXPECT_NEAR(read.scene.spectra.value(layer.albedo, 600), 0.3, 1e-6);
+  EXPECT_EQ(layer.asymmetry, -0.5f);
+  EXPECT_EQ(layer.walks, 3u);
+  EXPECT_THAT(MaterialsRead("\"m\": {\"type\": \"layered\", \"base_eta\": 2, \"eta\": 1.5}").messages,
+              HasSubstr("lacks the required key 'base_kappa'"));
+  EXPECT_THAT(
+      MaterialsRead("\"m\": {\"type\": \"layered\", \"base_metal\": \"Au\", \"base_kappa\": 2, \"eta\": 1.5,\n"
+                    "\"asymmetry\": 1}")
+          .messages,
+      AllOf(HasSubstr("'base_metal' and 'base_kappa' exclude each other"), HasSubstr("'asymmetry' is the number 1")));
+  EXPECT_THAT(
+      MaterialsRead("\"m\": {\"type\": \"layered\", \"reflectance\": 0.5, \"base_roughness\": 0.2, \"eta\": 1.5}")
+          .messages,
+      HasSubstr("'reflectance' and 'base_roughness' exclude each other"));
+}
+
+TEST(NativeLayeredMaterials, HairIsRead) {
+  const MaterialsRead read(
+      "\"m\": {\"type\": \"hair\", \"sigma_a\": 0.7, \"beta_m\": 0.2, \"beta_n\": 0.4, \"tilt\": 3, \"eta\": 1.6}");
+  EXPECT_EQ(read.messages, "");
+  const Material m = read.at(0);
+  EXPECT_EQ(m.kind, MaterialKind::hair);
+  EXPECT_NEAR(read.scene.spectra.value(m.hair.sigma_a, 500), 0.7, 1e-6);
+  EXPECT_EQ(m.hair.beta_m, 0.2f);
+  EXPECT_EQ(m.hair.beta_n, 0.4f);
+  EXPECT_EQ(m.hair.tilt_deg, 3);
+  EXPECT_NEAR(read.scene.spectra.value(m.eta, 500), 1.6, 1e-6);
+  EXPECT_THAT(MaterialsRead("\"m\": {\"type\": \"hair\", \"beta_m\": 2}").messages,
+              AllOf(HasSubstr("lacks the required key 'sigma_a'"), HasSubstr("'beta_m' is the number 2")));
 }
 
 TEST(NativeLayeredMaterials, SheetsHaveTwoAlbedos) {

@@ -1,6 +1,8 @@
 // pbrt's coats, sheets and mixes as the registry then holds them.
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "tests/scenes/pbrt/read_text.h"
 
 namespace metamer {
@@ -56,6 +58,83 @@ TEST(PbrtLayeredMaterials, CoatedDiffuseHasItsMistakesNamed) {
               ElementsAre("scene:3: error: Material \"coateddiffuse\": an index of refraction must be positive"));
   EXPECT_THAT(messages_of("Material \"coateddiffuse\" \"integer maxdepth\" -2"),
               ElementsAre(testing::HasSubstr("scene:2: error: Material \"coateddiffuse\": 'maxdepth'")));
+}
+
+TEST(PbrtLayeredMaterials, CoatedConductorHasPbrtsDefaults) {
+  MaterialRead read("Material \"coatedconductor\"");
+  EXPECT_EQ(read.m.kind, MaterialKind::layered);
+  const Layer& layer = read.m.layer;
+  EXPECT_EQ(layer.base, LayerBase::conductor);
+  EXPECT_NEAR(read.value(read.m.eta), 1.5, 1e-6);
+  EXPECT_NEAR(read.value(layer.base_kappa, 650), 3.6, 0.4) << "copper";
+  EXPECT_EQ(read.m.alpha_x, 0);
+  EXPECT_EQ(layer.base_alpha_x, 0);
+  EXPECT_EQ(layer.thickness, 0.01f);
+  EXPECT_EQ(layer.max_depth, 10u);
+  EXPECT_EQ(layer.asymmetry, 0);
+  EXPECT_EQ(read.value(layer.albedo), 0);
+}
+
+TEST(PbrtLayeredMaterials, CoatedConductorTakesAllOfItsParameters) {
+  MaterialRead read(
+      "Material \"coatedconductor\" \"float interface.eta\" 1.7 \"float interface.roughness\" .04 "
+      "\"spectrum conductor.eta\" \"metal-Au-eta\" \"spectrum conductor.k\" \"metal-Au-k\" "
+      "\"float conductor.uroughness\" .09 \"float conductor.vroughness\" .16 \"float thickness\" .2 \"float g\" -.3 "
+      "\"rgb albedo\" [.5 .5 .5] \"integer maxdepth\" 20 \"integer nsamples\" 3");
+  const Layer& layer = read.m.layer;
+  EXPECT_NEAR(read.value(read.m.eta), 1.7, 1e-6);
+  EXPECT_NEAR(read.m.alpha_x, 0.2, 1e-6);
+  EXPECT_NEAR(read.m.alpha_y, 0.2, 1e-6);
+  EXPECT_NEAR(read.value(layer.base_eta, 600), 0.23, 0.05);
+  EXPECT_NEAR(layer.base_alpha_x, 0.3, 1e-6);
+  EXPECT_NEAR(layer.base_alpha_y, 0.4, 1e-6);
+  EXPECT_EQ(layer.thickness, 0.2f);
+  EXPECT_EQ(layer.asymmetry, -0.3f);
+  EXPECT_NEAR(read.value(layer.albedo), 0.5, 1e-5);
+  EXPECT_EQ(layer.max_depth, 20u);
+  EXPECT_EQ(layer.walks, 3u);
+  MaterialRead white(
+      "Material \"coatedconductor\" \"rgb reflectance\" [.8 .8 .8] \"bool remaproughness\" false "
+      "\"float conductor.roughness\" .3");
+  EXPECT_NEAR(white.value(white.m.layer.base_kappa), 2 * std::sqrt(0.8) / std::sqrt(0.2), 1e-3);
+  EXPECT_EQ(white.m.layer.base_alpha_y, 0.3f);
+  EXPECT_THAT(messages_of("Material \"coatedconductor\" \"float g\" 1"),
+              ElementsAre("scene:2: error: Material \"coatedconductor\": 'g' must be between -1 and 1"));
+}
+
+TEST(PbrtLayeredMaterials, HairIsBrownUnlessItSaysOtherwise) {
+  MaterialRead brown("Material \"hair\"");
+  EXPECT_EQ(brown.m.kind, MaterialKind::hair);
+  EXPECT_EQ(brown.m.hair.beta_m, 0.3f);
+  EXPECT_EQ(brown.m.hair.beta_n, 0.3f);
+  EXPECT_EQ(brown.m.hair.tilt_deg, 2);
+  EXPECT_NEAR(brown.value(brown.m.eta), 1.55, 1e-6);
+  EXPECT_GT(brown.value(brown.m.hair.sigma_a, 450), 2 * brown.value(brown.m.hair.sigma_a, 620)) << "red passes best";
+  MaterialRead grey(
+      "Material \"hair\" \"rgb sigma_a\" [.5 .5 .5] \"float eta\" 1.6 \"float beta_m\" .2 "
+      "\"float beta_n\" .4 \"float alpha\" 3");
+  EXPECT_NEAR(grey.value(grey.m.hair.sigma_a), 0.5, 1e-4);
+  EXPECT_NEAR(grey.value(grey.m.eta), 1.6, 1e-6);
+  EXPECT_EQ(grey.m.hair.beta_m, 0.2f);
+  EXPECT_EQ(grey.m.hair.beta_n, 0.4f);
+  EXPECT_EQ(grey.m.hair.tilt_deg, 3);
+  MaterialRead coloured("Material \"hair\" \"rgb reflectance\" [.5 .5 .5]");
+  EXPECT_NEAR(coloured.value(coloured.m.hair.sigma_a), std::pow(std::log(0.5) / 5.88842, 2), 1e-4);
+  MaterialRead same("Material \"hair\" \"rgb color\" [.5 .5 .5]");
+  EXPECT_NEAR(same.value(same.m.hair.sigma_a), coloured.value(coloured.m.hair.sigma_a), 1e-9);
+  MaterialRead red("Material \"hair\" \"float pheomelanin\" 1");
+  MaterialRead black("Material \"hair\" \"float eumelanin\" 8");
+  EXPECT_LT(red.value(red.m.hair.sigma_a, 600), 0.5);
+  EXPECT_GT(black.value(black.m.hair.sigma_a, 600), 3);
+}
+
+TEST(PbrtLayeredMaterials, HairHasItsMistakesNamed) {
+  EXPECT_THAT(messages_of("Material \"hair\" \"float beta_m\" 2"),
+              ElementsAre("scene:2: error: Material \"hair\": beta_m must be from 0 to 1"));
+  EXPECT_THAT(
+      messages_of("Material \"hair\" \"float eumelanin\" 1 \"rgb color\" [.5 .5 .5]"),
+      ElementsAre("scene:2: warning: material \"hair\": of 'sigma_a', 'reflectance' or 'color', and pigments the "
+                  "first counts"));
 }
 
 TEST(PbrtLayeredMaterials, DiffuseTransmissionScalesBothOfItsAlbedos) {

@@ -147,18 +147,18 @@ TEST(PbrtMaterials, ReflectancesAboveOneAreClampedWithAWarning) {
 }
 
 TEST(PbrtMaterials, WhatReplacesTheUnsupportedIsSaidOncePerKind) {
-  const ReadScene read = read_world(
-      std::string("Texture \"wood\" \"spectrum\" \"ptex\" Texture \"glass\" \"spectrum\" \"ptex\"\n") +
-      "Material \"dielectric\" \"texture eta\" \"glass\"" + sphere +
-      "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere + "Material \"hair\" \"float eumelanin\" 1" +
-      sphere + "Material \"hair\" \"float eumelanin\" 1" + sphere);
+  const ReadScene read =
+      read_world(std::string("Texture \"wood\" \"spectrum\" \"ptex\" Texture \"glass\" \"spectrum\" \"ptex\"\n") +
+                 "Material \"dielectric\" \"texture eta\" \"glass\"" + sphere +
+                 "Material \"diffuse\" \"texture reflectance\" \"wood\"" + sphere +
+                 "Material \"subsurface\" \"float g\" 1" + sphere + "Material \"subsurface\" \"float g\" 1" + sphere);
   EXPECT_TRUE(read.ok);
-  EXPECT_THAT(
-      read.messages,
-      testing::ElementsAre(
-          "scene:2: warning: texture \"ptex\" is not supported; what it would colour gets its default value",
-          "scene:3: warning: textures for 'eta' are not supported yet; it gets its default value",
-          "scene:5: warning: material \"hair\" is not supported yet; it is rendered as diffuse with reflectance 0.5"));
+  EXPECT_THAT(read.messages,
+              testing::ElementsAre(
+                  "scene:2: warning: texture \"ptex\" is not supported; what it would colour gets its default value",
+                  "scene:3: warning: textures for 'eta' are not supported yet; it gets its default value",
+                  "scene:5: warning: material \"subsurface\" is not supported; it is rendered as diffuse with "
+                  "reflectance 0.5"));
 }
 
 TEST(PbrtMaterials, ShapesOfAnInterfaceThatSeparateNothingAreLeftOut) {

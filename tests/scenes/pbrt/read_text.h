@@ -10,33 +10,9 @@
 #include <vector>
 
 #include "scenes/pbrt/read_pbrt.h"
+#include "tests/scenes/support/files.h"
 
 namespace metamer {
-
-// A folder of this process's own, removed at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("metamer_pbrt_" + std::to_string(getpid()) + "_" + std::to_string(count_++))) {
-    std::filesystem::create_directories(path_);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return (path_ / name).string();
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  inline static int count_ = 0;
-  std::filesystem::path path_;
-};
 
 struct ReadScene {
   Scene scene;

@@ -26,7 +26,8 @@ struct Coat {
         schlick(false),
         thickness(layer.thickness),
         hits(layer.hits),
-        rows(add_coat_rows({std::sqrt(alpha_x * alpha_y_), false, true, thickness}, eta_least, eta_most, table)) {}
+        rows(add_coat_rows({alpha_x > 0 ? coat_table_alpha(alpha_x, alpha_y_) : 0, false, true, thickness}, eta_least,
+                           eta_most, table)) {}
   double alpha, alpha_y;
   bool schlick;
   double thickness = 0, hits = -1;
