@@ -227,15 +227,12 @@ TEST(LightSample, PartsOfQuadrics) {
   pipe.kind = ShapeKind::cylinder;
   zone.z_min = pipe.z_min = -0.7f;
   zone.z_max = pipe.z_max = 0.4f;
-  zone.phi_max_deg = sector.phi_max_deg = 250;
-  pipe.phi_max_deg = 130;
-  for (Geometry shape : {zone, pipe, sector})
+  zone.phi_max_deg = pipe.phi_max_deg = sector.phi_max_deg = 250;
+  for (const Geometry& shape : {zone, pipe, sector})
     for (const glm::dvec3& scale : {glm::dvec3(1, 1, 1), {1, -1.8, 0.7}}) {
-      const double height = shape.kind == ShapeKind::disk ? 0.9 : 0.1;  // round ones from inside
       SceneBuilder b = empty();
-      const glm::dmat4 place =
-          moved(0.1, height, -0.1) * turned(50, 1, 0.2, 0.5) * stretched(scale.x, scale.y, scale.z);
-      b.emit(b.add(shape, b.diffuse(0.0), place), unit_spectrum, 1, true);
+      const glm::dmat4 place = moved(0.1, shape.kind == ShapeKind::disk ? 0.9 : 0.1, -0.1) * turned(50, 1, 0.2, 0.5);
+      b.emit(b.add(shape, b.diffuse(0.0), place * stretched(scale.x, scale.y, scale.z)), unit_spectrum, 1, true);
       expect_sides_agree(b, {0, 0, 0}, 1);
     }
 }
