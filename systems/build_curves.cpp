@@ -63,6 +63,13 @@ void add_segment(const Points& points, uint32_t first_point, uint32_t count, Wor
 
 }  // namespace
 
+double extent(const Curves& curves) {
+  float largest = 0;
+  for (const glm::vec4& p : curves.points)
+    largest = std::max({largest, std::abs(p.x) + p.w, std::abs(p.y) + p.w, std::abs(p.z) + p.w});
+  return double{largest};
+}
+
 bool is_turned_and_scaled(const glm::dmat4& m) {
   const glm::dmat3 linear(m);
   const glm::dmat3 product = glm::transpose(linear) * linear;

@@ -6,6 +6,9 @@
 
 namespace metamer {
 
+// The largest coordinate of curves in their own space.
+double extent(const Curves& curves);
+
 // Whether a transformation turns, moves and scales evenly and does not mirror: then curves keep their shape, and need
 // not be instances.
 bool is_turned_and_scaled(const glm::dmat4& m);

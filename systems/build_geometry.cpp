@@ -73,12 +73,6 @@ double extent(const Mesh& mesh) {
   for (const glm::vec3& p : mesh.positions) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   return double{largest};
 }
-double extent(const Curves& curves) {
-  float largest = 0;
-  for (const glm::vec4& p : curves.points)
-    largest = std::max({largest, std::abs(p.x) + p.w, std::abs(p.y) + p.w, std::abs(p.z) + p.w});
-  return double{largest};
-}
 
 // Whether all of a placed shape and its inverse's numbers are where single precision and Embree can follow.
 bool is_within_reach(const glm::dmat4& to_world, double extent) {

@@ -70,6 +70,10 @@ TEST(Curves, AStraightFlatCurveIsARectangleTurnedToTheRay) {
   for (const glm::dvec3& beside : {glm::dvec3(1, 0.101, 0), {1, -0.101, 0}, {-0.01, 0, 0}, {3.01, 0, 0}})
     EXPECT_FALSE(trace(*world, beside + glm::dvec3(0, 0, 5), {0, 0, -1}).met);
   // Aslant the normal stays perpendicular to the curve and on the side of the ray.
+  // v counts to the left of the tangent for who looks along the ray: there, with z up and the curve to the right, down.
+  const TestHit left = trace(*world, {1, 0.05, 5}, {0, 0, -1});
+  EXPECT_NEAR(left.u, 1.0 / 3, 1e-4);
+  EXPECT_NEAR(left.v, 0.25, 1e-4);
   const TestHit aslant = trace(*world, {0.5, 0, 1}, {1, 0, -1});
   expect_vector(aslant.normal, {0, 0, 1});
   EXPECT_NEAR(aslant.distance, std::sqrt(2), 1e-5);
@@ -123,16 +127,16 @@ TEST(Curves, ABentCurveIsWhereItsPointsAre) {
   const std::unique_ptr<World> world = world_of(curves_of(bent), ShapeKind::flat_curves);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1.3, 1.3);
-  std::vector<TestRay> rays(4000);
+  std::vector<TestRay> rays(1500);
   for (TestRay& ray : rays) ray = {{uniform(random), uniform(random), 5}, {0, 0, -1}};
   const std::vector<TestHit> hits = trace(*world, rays);
   size_t met = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
     double nearest = 1e9, u = 0;
-    for (int k = 0; k <= 4000; ++k) {
-      const glm::dvec3 p = bent.at(k / 4000.0);
+    for (int k = 0; k <= 1000; ++k) {
+      const glm::dvec3 p = bent.at(k / 1000.0);
       const double d = std::hypot(p.x - rays[i].origin.x, p.y - rays[i].origin.y);
-      if (d < nearest) nearest = d, u = k / 4000.0;
+      if (d < nearest) nearest = d, u = k / 1000.0;
     }
     // As far as 1/20 of the greatest width the curve may be missed.
     const double half = (0.1 - 0.05 * u) / 2;
@@ -146,7 +150,7 @@ TEST(Curves, ABentCurveIsWhereItsPointsAre) {
     EXPECT_NEAR(hits[i].u, u, 0.01);
     EXPECT_NEAR(std::abs(hits[i].v - 0.5), nearest / (2 * half), 0.1);
   }
-  EXPECT_GT(met, 60u);
+  EXPECT_GT(met, 30u);
   EXPECT_GT(world->objects.triangle_count[0], 1u) << "bends too much for one segment";
 }
 
@@ -194,7 +198,7 @@ TEST(Curves, RaysThatLeaveAFibreDoNotMeetItAgain) {
   for (const ShapeKind kind : {ShapeKind::flat_curves, ShapeKind::ribbons, ShapeKind::round_curves})
     for (const glm::dmat4& place :
          {glm::dmat4(1), stretched(1e-3, 1e-3, 1e-3), moved(1000, 0, 0), stretched(1, -2, 1)}) {
-      SceneBuilder b(16, 16, 256, 4);
+      SceneBuilder b(16, 16, 64, 4);
       b.light(LightKind::environment, unit_spectrum, 1);
       b.scene.curves.push_back(curves_of(straight, {0, 0, 1}, {0, 0, 1}));
       Geometry geometry;
@@ -205,7 +209,7 @@ TEST(Curves, RaysThatLeaveAFibreDoNotMeetItAgain) {
       const double height = glm::length(at({0, 0.1, 0}) - at({0, 0, 0}));
       b.look_at(at({1.5, 0, 2}), at({1.5, 0, 0}), orthographic(static_cast<float>(height)));
       expect_mean(
-          trace_radiances(*b.freeze()), [](double) { return 0.5; }, 0.03);
+          trace_radiances(*b.freeze()), [](double) { return 0.5; }, 0.06);
     }
 }
 

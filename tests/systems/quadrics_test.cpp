@@ -118,6 +118,35 @@ TEST(Quadrics, PartsAgreeWithTheOracleUnderEveryTransformation) {
       }
 }
 
+// pbrt-v4, section 6.2 to 6.4: u is the part of phi_max, v of the height, of the polar angle, or from the rim inwards.
+TEST(Quadrics, PartsHaveTheCoordinatesOfPbrt) {
+  const auto coordinates = [](const Geometry& geometry, const glm::dvec3& point, const glm::dvec3& away) {
+    SceneBuilder b(8, 8, 1, 1);
+    b.add(geometry, b.diffuse(0.5));
+    Curves far_away;  // asks for coordinates
+    for (const float x : {0.0f, 1.0f, 2.0f, 3.0f}) far_away.points.push_back({x, 900, 0, 0.1f});
+    far_away.segments.push_back(0);
+    b.scene.curves.push_back(far_away);
+    b.add({.kind = ShapeKind::flat_curves, .curves = 0}, b.diffuse(0.5));
+    b.look_at({0, 0, 50}, {0, 0, 0}, perspective(40));
+    const TestHit hit = trace(*b.freeze(), point + away, -away);
+    EXPECT_TRUE(hit.met);
+    return glm::dvec2(hit.u, hit.v);
+  };
+  const auto expect = [](const glm::dvec2& found, double u, double v) {
+    EXPECT_NEAR(found.x, u, 1e-5);
+    EXPECT_NEAR(found.y, v, 1e-5);
+  };
+  const double s = std::sqrt(0.5), r = std::sqrt(1 - 0.0625);
+  expect(coordinates(cylinder(1, -1, 3, 180), {s, s, 0}, {s, s, 0}), 0.25, 0.25);
+  expect(coordinates(cylinder(1, -1, 3), {s, -s, 2}, {s, -s, 0}), 0.875, 0.75);
+  const Geometry zone = part(sphere(1), -0.5f, 0.5f, 90);
+  expect(coordinates(zone, {s, s, 0}, {s, s, 0}), 0.5, 0.5);
+  const double lowest = std::acos(-0.5), highest = std::acos(0.5);
+  expect(coordinates(zone, {r * s, r * s, 0.25}, {s, s, 0}), 0.5, (std::acos(0.25) - lowest) / (highest - lowest));
+  expect(coordinates(part(disk(1, 0.2f), 0, 0, 270), {-0.6 * s, 0.6 * s, 0}, {0, 0, 1}), 0.5, 0.5);
+}
+
 TEST(Quadrics, LightRowsKnowTheirArea) {
   const Light light;
   const auto area = [&](const Geometry& shape, const glm::dmat4& place) {

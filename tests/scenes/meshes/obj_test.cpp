@@ -98,7 +98,8 @@ TEST(Meshes, AreToldApartByExtension) {
   Diagnostics diagnostics;
   EXPECT_FALSE(read_mesh("mesh.stl", {"scene.json", 7}, mesh, diagnostics));
   EXPECT_EQ(format_diagnostics(diagnostics),
-            "scene.json:7: error: 'mesh.stl': unknown kind of mesh; expected a file ending in .ply or .obj\n");
+            "scene.json:7: error: 'mesh.stl': unknown kind of mesh; expected a file ending in .ply or .obj, or these "
+            "with .gz\n");
 }
 
 TEST(Meshes, ValidationCountsEachKindOfMistake) {
