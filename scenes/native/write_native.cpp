@@ -175,6 +175,7 @@ FileError write_native(const Scene& scene, const std::string& path, const Cancel
   const std::string text = scene_text(context).text();
   if (!context.mistakes.empty()) return fmt::format("{}: cannot say: {}", path, fmt::join(context.mistakes, ", "));
   files.bytes = text.size();
+  files.remarks = context.remarks;
   StagedFolder staged;
   const bool has_side_files = !context.meshes.empty() || !context.images.empty();
   if (has_side_files) {
