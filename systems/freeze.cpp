@@ -22,8 +22,10 @@ std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   build_geometry(scene, to_world, materials, volumes, *world, diagnostics);
   build_lights(scene, to_world, *world, diagnostics);
   build_camera(scene, to_world, *world, diagnostics);
-  if (scene.settings.integrator == Integrator::ambient_occlusion)
-    world->ambient_light = world->spectra.add_rgb({1, 1, 1}, RgbKind::illuminant, ColorSpace::srgb).id;
+  if (scene.settings.integrator == Integrator::ambient_occlusion) {
+    const SpectrumId white = world->spectra.add_white(ColorSpace::srgb);
+    world->ambient_light = world->spectra.scaled(white, 1 / world->spectra.luminance(white)).id;
+  }
   build_coefficients(*world);
   if (world->zero_area_triangles > 0)
     diagnostics.warning(

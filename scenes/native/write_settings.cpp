@@ -40,6 +40,8 @@ JsonText write_settings(const RenderSettings& settings) {
   if (!settings.pixel_jitter) object.add("pixel_jitter", JsonText::boolean(false));
   if (settings.shutter_open != usual.shutter_open || settings.shutter_close != usual.shutter_close)
     object.add("shutter", JsonText::numbers(std::array{settings.shutter_open, settings.shutter_close}));
+  if (settings.occlusion_distance != usual.occlusion_distance)
+    object.add("occlusion_distance", JsonText::number(settings.occlusion_distance));
   if (settings.exposure_stops != usual.exposure_stops)
     object.add("exposure", JsonText::number(settings.exposure_stops));
   if (settings.sensor_scale != usual.sensor_scale) object.add("sensor_scale", JsonText::number(settings.sensor_scale));

@@ -31,7 +31,11 @@ struct Corner {
 };
 
 TEST(AmbientOcclusion, AnOpenFloorIsWhiteWhateverLightsIt) {
-  for (const double y : Corner(INFINITY, false).columns()) EXPECT_NEAR(y, 1, 0.01);
+  for (const ColorMode mode : {ColorMode::spectral, ColorMode::rgb}) {
+    Corner open(INFINITY, false);
+    open.b.scene.settings.color = mode;
+    for (const double y : open.columns()) EXPECT_NEAR(y, 1, 0.01);
+  }
 }
 
 TEST(AmbientOcclusion, BesideAnEndlessWallHalfIsOpen) {
