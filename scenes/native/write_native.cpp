@@ -149,11 +149,13 @@ const ImageFile& WriteContext::texture_image_file(ImageId id) {
   for (const ImageFile& known : images)
     if (known.id == id) return known;
   const Image& image = scene.images[id];
-  ImageEncoding encoding = texture_encoding(image.name);
-  const bool is_srgb = is_file(image, encoding, true);
-  encoding.gamma = 1;
-  const bool is_linear = !is_srgb && is_file(image, encoding, true);
-  return add_image_file(id, is_srgb || is_linear, is_linear);
+  // Files of floats are the same either way: linear, as normal maps are, which may share them.
+  const std::string ending = file_extension(image.name);
+  const bool holds_floats = ending == "exr" || ending == "hdr" || ending == "pfm";
+  ImageEncoding likely = texture_encoding(image.name), other = likely;
+  (holds_floats ? likely : other).gamma = 1;
+  const bool is_likely = is_file(image, likely, true), is_other = !is_likely && is_file(image, other, true);
+  return add_image_file(id, is_likely || is_other, is_likely ? holds_floats : is_other && !holds_floats);
 }
 
 const ImageFile& WriteContext::light_image_file(ImageId id) {
