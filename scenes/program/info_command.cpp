@@ -54,7 +54,7 @@ template <class Kind, size_t N>
 Counts count_kinds(const Column<Kind>& column, const std::array<const char*, N>& names) {
   Counts counts;
   for (const char* name : names) counts.push_back({name, 0});
-  for (const Kind kind : column) ++counts[static_cast<size_t>(kind)].count;
+  for (const Kind kind : column) ++counts.at(static_cast<size_t>(kind)).count;
   return counts;
 }
 
@@ -95,8 +95,9 @@ SceneInfo gather(const LoadedScene& loaded, const BuiltWorld& built) {
   count_geometry(scene, info);
   info.mesh_triangles = world.triangle_vertices.size() / 3;
   info.zero_area_triangles = world.zero_area_triangles;
-  info.materials = count_kinds<MaterialKind, 6>(scene.registry.table<Material>().column<&Material::kind>(),
-                                                {"diffuse", "conductor", "dielectric", "rough", "coated", "smooth"});
+  info.materials = count_kinds<MaterialKind, 11>(scene.registry.table<Material>().column<&Material::kind>(),
+                                                 {"diffuse", "conductor", "dielectric", "rough", "coated", "smooth",
+                                                  "layered", "diffuse transmission", "mix", "hair", "interface"});
   info.lights =
       count_kinds<LightKind, 7>(scene.registry.table<Light>().column<&Light::kind>(),
                                 {"area", "point", "spot", "directional", "environment", "goniometric", "projection"});

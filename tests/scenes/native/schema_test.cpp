@@ -119,7 +119,7 @@ TEST(NativePage, ShowsSnippetsThatCanBeRead) {
     EXPECT_TRUE(read_native("page.json", copy_bytes(text), scene, diagnostics))
         << format_diagnostics(diagnostics) << text;
   }
-  EXPECT_EQ(found, 8);
+  EXPECT_EQ(found, 11);
 }
 
 }  // namespace

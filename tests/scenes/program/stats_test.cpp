@@ -58,6 +58,15 @@ TEST_F(Reports, InfoCountsWhatIsInTheScene) {
   EXPECT_EQ(info["remarks"].size(), 0u);
 }
 
+// A scene with every key has every kind of material.
+TEST_F(Reports, InfoCountsEveryKindOfMaterial) {
+  const ProgramResult result = run({"info", METAMER_SOURCE_DIR "/tests/scenes/native/every_key.json", "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const Json::Value materials = parse_json(result.out)["materials"];
+  EXPECT_EQ(materials.size(), 11u);
+  for (const std::string& name : materials.getMemberNames()) EXPECT_GT(materials[name].asUInt(), 0u) << name;
+}
+
 TEST_F(Reports, InfoTellsWarnings) {
   std::string scene(small_scene);
   scene.insert(scene.find("\"entities\": [") + 13, R"({"geometry": {"type": "mesh", "mesh": "flat"}},)");
