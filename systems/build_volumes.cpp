@@ -36,38 +36,6 @@ double mean(const Grid& grid, size_t channel) {
   return sum * grid.channels / static_cast<double>(grid.values.size());
 }
 
-// What varies in space counts by its means; what is in a file that nothing reads is empty.
-Medium without_grids(const Scene& scene, Entity entity, World& world, Diagnostics& diagnostics) {
-  Medium medium = scene.registry.get<Medium>(entity);
-  if (!scene.registry.has<MediumGrid>(entity)) return medium;
-  const MediumGrid grid = scene.registry.get<MediumGrid>(entity);
-  const auto warn = [&](std::string_view instead) {
-    diagnostics.warning(scene.location(entity),
-                        fmt::format("medium {}: grids are not supported yet; {}", scene.describe(entity), instead));
-  };
-  if (grid.file != no_index) {
-    warn("its file is not read, it is rendered as empty space");
-    return {};
-  }
-  warn("it is rendered as homogeneous, with the means of its grids");
-  const auto tint = [&](GridId id, SpectrumId& spectrum) {
-    if (id == no_index) return;
-    const Grid& colour = scene.grids[id];
-    const Color3 rgb = {mean(colour, 0), mean(colour, 1), mean(colour, 2)};
-    spectrum =
-        world.spectra.product(spectrum, world.spectra.add_rgb(rgb, RgbKind::unbounded, colour.color_space).id).id;
-  };
-  if (grid.density != no_index) medium.scale *= static_cast<float>(mean(scene.grids[grid.density], 0));
-  tint(grid.sigma_a, medium.sigma_a);
-  tint(grid.sigma_s, medium.sigma_s);
-  if (grid.emission != no_index && scene.grids[grid.emission].channels == 3) {
-    tint(grid.emission, medium.emission);
-  } else if (grid.emission != no_index) {
-    medium.emission_scale *= static_cast<float>(mean(scene.grids[grid.emission], 0));
-  }
-  return medium;
-}
-
 // Whether some wavelength is scattered or absorbed sooner than another.
 bool is_chromatic(const Medium& medium, const World& world) {
   const SpectrumSet& spectra = world.spectra;
@@ -98,6 +66,36 @@ uint32_t add_volume(const Medium& medium, World& world) {
 
 }  // namespace
 
+Medium homogeneous_medium(const Scene& scene, Entity entity, SpectrumSet& spectra, Diagnostics& diagnostics) {
+  Medium medium = scene.registry.get<Medium>(entity);
+  if (!scene.registry.has<MediumGrid>(entity)) return medium;
+  const MediumGrid grid = scene.registry.get<MediumGrid>(entity);
+  const auto warn = [&](std::string_view instead) {
+    diagnostics.warning(scene.location(entity),
+                        fmt::format("medium {}: grids are not supported yet; {}", scene.describe(entity), instead));
+  };
+  if (grid.file != no_index) {
+    warn("its file is not read, it is rendered as empty space");
+    return {};
+  }
+  warn("it is rendered as homogeneous, with the means of its grids");
+  const auto tint = [&](GridId id, SpectrumId& spectrum) {
+    if (id == no_index) return;
+    const Grid& colour = scene.grids[id];
+    const Color3 rgb = {mean(colour, 0), mean(colour, 1), mean(colour, 2)};
+    spectrum = spectra.product(spectrum, spectra.add_rgb(rgb, RgbKind::unbounded, colour.color_space).id).id;
+  };
+  if (grid.density != no_index) medium.scale *= static_cast<float>(mean(scene.grids[grid.density], 0));
+  tint(grid.sigma_a, medium.sigma_a);
+  tint(grid.sigma_s, medium.sigma_s);
+  if (grid.emission != no_index && scene.grids[grid.emission].channels == 3) {
+    tint(grid.emission, medium.emission);
+  } else if (grid.emission != no_index) {
+    medium.emission_scale *= static_cast<float>(mean(scene.grids[grid.emission], 0));
+  }
+  return medium;
+}
+
 std::vector<VolumeSides> build_volumes(const Scene& scene, World& world, Diagnostics& diagnostics) {
   const Registry& registry = scene.registry;
   Medium empty;
@@ -106,7 +104,7 @@ std::vector<VolumeSides> build_volumes(const Scene& scene, World& world, Diagnos
   std::vector<uint32_t> rows;
   registry.each<Medium>([&](Entity entity, uint32_t) {
     if (entity.index >= rows.size()) rows.resize(entity.index + 1);
-    const Medium medium = without_grids(scene, entity, world, diagnostics);
+    const Medium medium = homogeneous_medium(scene, entity, world.spectra, diagnostics);
     if (check_medium(scene, entity, medium, world.spectra, diagnostics)) rows[entity.index] = add_volume(medium, world);
   });
   const auto row_of = [&](Entity owner, Entity medium) {

@@ -29,14 +29,13 @@ Medium read_medium(SceneContext& context, const JsonObject& object) {
 void read_media(SceneContext& context, const Json::Value& media) {
   if (!media.isObject()) return context.reader.expected(media, "media", "an object of named media");
   Registry& registry = context.scene.registry;
-  for (auto it = media.begin(); it != media.end(); ++it) {
-    if (is_repeated_key(it.name())) continue;
+  for (const auto& [name, value] : members_in_order(media)) {
     const Entity entity = registry.create();
-    registry.set(entity, Source{context.file, context.reader.document().at_key(*it).line});
-    registry.set(entity, Name{context.scene.names.add(it.name())});
-    context.media.emplace(it.name(), entity);
-    context.reader.set_subject(fmt::format("medium '{}'", printable_text(it.name())));
-    const JsonObject object(context.reader, *it, "medium");
+    registry.set(entity, Source{context.file, context.reader.document().at_key(*value).line});
+    registry.set(entity, Name{context.scene.names.add(name)});
+    context.media.emplace(name, entity);
+    context.reader.set_subject(fmt::format("medium '{}'", printable_text(name)));
+    const JsonObject object(context.reader, *value, "medium");
     registry.set(entity, object.is_valid() ? read_medium(context, object) : Medium{});
     context.reader.set_subject({});
   }

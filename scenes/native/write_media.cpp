@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "scenes/native/write_parts.h"
+#include "systems/freeze.h"
 
 namespace metamer {
 namespace {
@@ -18,8 +19,10 @@ JsonText write_medium(WriteContext& context, const Medium& medium) {
   spectrum("sigma_s", medium.sigma_s);
   number("scale", medium.scale, 1);
   number("g", medium.g, 0);
-  spectrum("emission", medium.emission);
-  number("emission_scale", medium.emission_scale, 1);
+  if (context.own_spectra.max_value(medium.sigma_a) > 0) {  // what absorbs nothing emits nothing
+    spectrum("emission", medium.emission);
+    number("emission_scale", medium.emission_scale, 1);
+  }
   return object;
 }
 
@@ -37,8 +40,8 @@ JsonText write_media(WriteContext& context) {
         names.take(own.name == no_index ? fmt::format("medium {}", row + 1) : context.scene.names[own.name]);
     if (entity.index >= context.medium_names.size()) context.medium_names.resize(entity.index + 1);
     context.medium_names[entity.index] = name;
-    if (registry.has<MediumGrid>(entity)) context.mistakes.push_back(fmt::format("the grids of medium '{}'", name));
-    media.add(name, write_medium(context, table.get(row)));
+    const Medium medium = homogeneous_medium(context.scene, entity, context.own_spectra, context.remarks);
+    media.add(name, write_medium(context, medium));
   }
   return media;
 }

@@ -149,11 +149,13 @@ const ImageFile& WriteContext::texture_image_file(ImageId id) {
   for (const ImageFile& known : images)
     if (known.id == id) return known;
   const Image& image = scene.images[id];
-  ImageEncoding encoding = texture_encoding(image.name);
-  const bool is_srgb = is_file(image, encoding, true);
-  encoding.gamma = 1;
-  const bool is_linear = !is_srgb && is_file(image, encoding, true);
-  return add_image_file(id, is_srgb || is_linear, is_linear);
+  // Files of floats are the same either way: linear, as normal maps are, which may share them.
+  const std::string ending = file_extension(image.name);
+  const bool holds_floats = ending == "exr" || ending == "hdr" || ending == "pfm";
+  ImageEncoding likely = texture_encoding(image.name), other = likely;
+  (holds_floats ? likely : other).gamma = 1;
+  const bool is_likely = is_file(image, likely, true), is_other = !is_likely && is_file(image, other, true);
+  return add_image_file(id, is_likely || is_other, is_likely ? holds_floats : is_other && !holds_floats);
 }
 
 const ImageFile& WriteContext::light_image_file(ImageId id) {
@@ -175,6 +177,7 @@ FileError write_native(const Scene& scene, const std::string& path, const Cancel
   const std::string text = scene_text(context).text();
   if (!context.mistakes.empty()) return fmt::format("{}: cannot say: {}", path, fmt::join(context.mistakes, ", "));
   files.bytes = text.size();
+  files.remarks = context.remarks;
   StagedFolder staged;
   const bool has_side_files = !context.meshes.empty() || !context.images.empty();
   if (has_side_files) {

@@ -12,7 +12,8 @@ namespace metamer {
 struct NativeFiles {
   std::string folder;  // of the side files; empty if there are none
   size_t meshes = 0, images = 0;
-  uint64_t bytes = 0;  // of all files together
+  uint64_t bytes = 0;   // of all files together
+  Diagnostics remarks;  // what the format cannot say: it is written as it is rendered
 };
 
 // Writes the scene to `path` and its meshes (PLY) and images beside it, to the folder "NAME-files" for "NAME.json",

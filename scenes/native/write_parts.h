@@ -43,8 +43,10 @@ struct WriteContext {
   WriteContext(const Scene& scene_, std::string folder_) : scene(scene_), folder(std::move(folder_)) {}
 
   const Scene& scene;
-  std::string folder;  // of the side files, as the scene file names it
-  SpectrumWriter spectra{scene.spectra};
+  std::string folder;                      // of the side files, as the scene file names it
+  SpectrumSet own_spectra{scene.spectra};  // and those that only the file has
+  SpectrumWriter spectra{own_spectra};
+  Diagnostics remarks;  // what is lost
   UniqueNames entity_names{' '}, file_names{'-'};
   std::vector<std::string> material_names, names, medium_names;  // by entity index; empty: none
   JsonText mesh_definitions = JsonText::object().break_lines();

@@ -32,12 +32,15 @@ int run_convert(const ConvertArguments& arguments) {
     throw Failure(exit_wrong_input, target + ": is the scene itself, another file was expected for the output");
   if (const FileError error = check_native_target(target)) throw Failure(exit_failed, *error);
   const LoadedScene loaded = load_scene(source, {}, {arguments.quiet, arguments.strict});
+  if (arguments.strict) build_world(loaded, source, {arguments.quiet, true});  // for its remarks
   install_signal_handlers(cancellation);
   save_when_interrupted();
   NativeFiles files;
   if (const FileError error = write_native(loaded.scene, target, cancellation, files))
     throw Failure(exit_failed, *error);
-  if (!arguments.quiet) tell(target, files);
+  if (arguments.quiet) return exit_done;
+  std::fputs(format_diagnostics(files.remarks).c_str(), stderr);
+  tell(target, files);
   return exit_done;
 }
 

@@ -36,10 +36,10 @@ TEST(NativeWriter, KnowsEveryFieldThatASceneHas) {
   EXPECT_EQ(field_count<Name>, 1u);
   EXPECT_EQ(field_count<Visibility>, 1u);
   EXPECT_EQ(field_count<Medium>, 6u);
-  EXPECT_EQ(field_count<MediumGrid>, 10u);  // cannot be written yet, which is said
+  EXPECT_EQ(field_count<MediumGrid>, 10u);  // their means are written, which is said
   EXPECT_EQ(field_count<MediumSlot>, 2u);
   EXPECT_EQ(field_count<Source>, 2u);  // a new file has lines of its own
-  EXPECT_EQ(sizeof(RenderSettings), 112u);
+  EXPECT_EQ(sizeof(RenderSettings), 128u);
   EXPECT_EQ(sizeof(Filter), 16u);
   EXPECT_EQ(sizeof(Image), 96u);
   EXPECT_EQ(sizeof(Texture), 172u);
@@ -322,6 +322,26 @@ TEST(NativeWriter, MaterialsOfOthersAreKept) {
   expect_converts(read.scene);
 }
 
+// What is rendered of grids is what is written; that the rest is lost is said.
+TEST(NativeWriter, MediaAreKeptAndGridsBecomeTheirMeans) {
+  const ReadScene read = read_world(R"(LightSource "infinite" Translate 0 0 4
+    MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [0.3 0.2 0.1] "float g" 0.3 "float scale" 2
+    MakeNamedMedium "smoke" "string type" "uniformgrid" "integer nx" 2 "integer ny" 1 "integer nz" 1
+      "float density" [0.5 1] "spectrum sigma_a" [400 0.1 700 0.4]
+    MediumInterface "fog" "smoke" Material "interface" Shape "sphere"
+    MediumInterface "smoke" "" Material "interface" Shape "sphere" "float radius" 2)");
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  const TemporaryFolder folder;
+  NativeFiles files;
+  EXPECT_FALSE(write_native(read.scene, (folder.path() / "scene.json").string(), Cancellation(), files));
+  EXPECT_THAT(format_diagnostics(files.remarks), HasSubstr("medium 'smoke': grids are not supported yet"));
+  const Scene back = converted(read.scene);
+  EXPECT_EQ(back.registry.table<Medium>().size(), 2u);
+  EXPECT_EQ(back.registry.table<Medium>().get(1).scale, 0.75f);
+  ASSERT_NE(tiny_film(read.scene), nullptr);
+  expect_converts(read.scene);
+}
+
 TEST(NativeWriter, MotionCropAndShutterAreKept) {
   const ReadScene read = read_text(R"(
     Film "rgb" "integer xresolution" 40 "integer yresolution" 30 "float cropwindow" [0.1 0.7 0.25 0.9]
@@ -353,7 +373,7 @@ TEST(NativeWriter, MeshesAreSharedAsBefore) {
   const auto files = files_in(folder.path());
   EXPECT_EQ(files.size(), 4u) << "the scene and three meshes";
   EXPECT_TRUE(files.contains("scene-files/scene-3.ply"));
-  EXPECT_EQ(read_moved(folder.path()).meshes.size(), 3u);
+  EXPECT_EQ(read_without_remarks(folder.path() / "scene.json").meshes.size(), 3u);
   expect_converts(read.scene);
 }
 
