@@ -22,9 +22,9 @@ struct ObjectColumns {
   Column<uint32_t> placement;       // row in World::placements; 0 is the identity: vertices are in world space
   Column<uint32_t> visibility;      // mask of rays that see it
   Column<uint32_t> volume_inside, volume_outside;  // rows of World::volumes; keeps_volume in both: as before
-  Column<uint32_t> first_key;       // into World::motion_keys; unused by what stands still
-  Column<uint32_t> key_count;       // 0: it stands still; else 2 or more, evenly spaced over the time of the shutter
-  Column<uint32_t> alpha;           // program of TextureSet: the chance that a ray meets it; no_index: 1
+  Column<uint32_t> first_key;                      // into World::motion_keys; unused by what stands still
+  Column<uint32_t> key_count;  // 0: it stands still; else 2 or more, evenly spaced over the time of the shutter
+  Column<uint32_t> alpha;      // program of TextureSet: the chance that a ray meets it; no_index: 1
   size_t size() const { return kind.size(); }
 };
 
