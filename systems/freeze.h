@@ -11,6 +11,8 @@ namespace metamer {
 // Builds the world: transforms, materials by kind, geometry, lights, camera, acceleration structure. Mistakes go to
 // `diagnostics` with the place where the user made them; with errors among them the result is null.
 std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics);
+// The same, but meshes and images are given back as soon as the world has them: less memory while trees are built.
+std::unique_ptr<World> freeze(Scene&& scene, Diagnostics& diagnostics);
 
 // Object to world of every entity, by entity index. Errors: a cycle of parents, a singular or non-finite matrix.
 std::vector<glm::dmat4> build_transforms(const Scene& scene, Diagnostics& diagnostics);
@@ -36,6 +38,9 @@ struct VolumeSides {
 // The media that fill space, their places by entity index, and what the camera is in. Errors: negative or infinite
 // coefficients, g not between -1 and 1, a slot that names an entity without Medium.
 std::vector<VolumeSides> build_volumes(const Scene& scene, World& world, Diagnostics& diagnostics);
+
+// Room for all triangles: growing the columns mesh by mesh would copy them again and again. Meshes exist.
+void reserve_triangles(const Scene& scene, World& world);
 
 // Objects, vertices, quadrics, and the light rows of emitting shapes.
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,
