@@ -29,8 +29,8 @@ struct BuiltWorld {
   double seconds = 0;
 };
 
-// Freezes a scene that was read from `path`. Throws and prints as load_scene. What is not needed any more is best handed
-// over: its meshes and images are given back on the way.
+// Freezes a scene that was read from `path`. Throws and prints as load_scene. What is not needed any more is best
+// handed over: its meshes and images are given back on the way.
 BuiltWorld build_world(const LoadedScene& loaded, const std::string& path, Remarks remarks);
 BuiltWorld build_world(LoadedScene&& loaded, const std::string& path, Remarks remarks);
 
