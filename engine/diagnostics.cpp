@@ -9,6 +9,8 @@ namespace metamer {
 namespace {
 
 constexpr size_t max_printed = 100;
+constexpr size_t longest_text = 2000;  // of a message or a file's name, bytes
+constexpr size_t longest_word = 64;    // that could be a mistyped one
 
 // Insertions, deletions, substitutions and swaps of neighbours ("optimal string alignment").
 size_t edit_distance(std::string_view a, std::string_view b) {
@@ -25,6 +27,15 @@ size_t edit_distance(std::string_view a, std::string_view b) {
     }
   }
   return row.back();
+}
+
+// Names in messages come from files: no control characters reach the terminal, nor megabytes.
+std::string readable(std::string_view text) {
+  std::string out(text.substr(0, longest_text));
+  for (char& c : out)
+    if ((c >= 0 && c < ' ') || c == 0x7f) c = '?';
+  if (text.size() > longest_text) out += "...";
+  return out;
 }
 
 std::string_view severity_name(Severity severity) {
@@ -68,8 +79,8 @@ std::string format_diagnostics(const Diagnostics& diagnostics) {
   std::string text;
   for (size_t i = 0; i < std::min(order.size(), max_printed); ++i) {
     const Diagnostic& d = *order[i];
-    text += d.line > 0 ? fmt::format("{}:{}: {}: {}\n", d.file, d.line, severity_name(d.severity), d.message)
-                       : fmt::format("{}: {}: {}\n", d.file, severity_name(d.severity), d.message);
+    const std::string place = d.line > 0 ? fmt::format("{}:{}", readable(d.file), d.line) : readable(d.file);
+    text += fmt::format("{}: {}: {}\n", place, severity_name(d.severity), readable(d.message));
   }
   if (order.size() > max_printed) text += fmt::format("... and {} more\n", order.size() - max_printed);
   return text;
@@ -77,8 +88,11 @@ std::string format_diagnostics(const Diagnostics& diagnostics) {
 
 std::string nearest_word(std::string_view word, std::span<const std::string_view> candidates) {
   std::string_view best;
+  if (word.size() > longest_word) return {};
   size_t best_distance = std::max<size_t>(1, word.size() / 3) + 1;
   for (const std::string_view candidate : candidates) {
+    const size_t longer = std::max(word.size(), candidate.size()), shorter = std::min(word.size(), candidate.size());
+    if (longer - shorter >= best_distance) continue;  // as many insertions at least
     const size_t distance = edit_distance(word, candidate);
     if (distance < best_distance) {
       best_distance = distance;

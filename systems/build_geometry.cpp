@@ -106,8 +106,6 @@ uint32_t add_triangles(Builder& b, const Mesh& mesh, const glm::dmat4& to_world,
   const bool mirrored = glm::determinant(linear) < 0;
   const bool has_normals = mesh.normals.size() == mesh.positions.size();
   const bool has_uvs = mesh.uvs.size() == mesh.positions.size();
-  world.positions.reserve(world.positions.size() + mesh.positions.size() * 3);
-  world.normals.reserve(world.normals.size() + mesh.positions.size() * 3);
   for (size_t v = 0; v < mesh.positions.size(); ++v) {
     push_vector(world.positions, glm::dvec3(to_world * glm::dvec4(glm::dvec3(mesh.positions[v]), 1.0)));
     glm::dvec3 normal(0);
@@ -291,6 +289,7 @@ void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, st
   count_users(b);
   for (const Mesh& mesh : scene.meshes) b.mesh_extent.push_back(extent(mesh));
   if (diagnostics.has_errors()) return;
+  reserve_triangles(scene, world);
   registry.each<Geometry>([&](Entity entity, uint32_t row) {
     const Geometry geometry = table.get(row);
     ObjectColumns& objects = world.objects;

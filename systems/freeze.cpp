@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 namespace metamer {
+namespace {
 
-std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
+// `disposable` is the scene if it is not needed any more, else null.
+std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics& diagnostics) {
   auto world = std::make_unique<World>();
   world->settings = scene.settings;
   world->spectra = scene.spectra;
@@ -20,7 +22,9 @@ std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   const std::vector<MaterialRow> materials = build_materials(scene, *world, diagnostics);
   const std::vector<VolumeSides> volumes = build_volumes(scene, *world, diagnostics);
   build_geometry(scene, to_world, materials, volumes, *world, diagnostics);
+  if (disposable != nullptr) std::vector<Mesh>().swap(disposable->meshes);
   build_lights(scene, to_world, *world, diagnostics);
+  if (disposable != nullptr) std::vector<Image>().swap(disposable->images);
   build_camera(scene, to_world, *world, diagnostics);
   if (scene.settings.integrator == Integrator::ambient_occlusion) {
     const SpectrumId white = world->spectra.add_white(ColorSpace::srgb);
@@ -39,5 +43,38 @@ std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   build_camera_media(*world);
   return world;
 }
+
+}  // namespace
+
+void reserve_triangles(const Scene& scene, World& world) {
+  const Table<Geometry>& table = scene.registry.table<Geometry>();
+  std::vector<uint32_t> users(scene.meshes.size());
+  for (uint32_t row = 0; row < table.size(); ++row)
+    if (const Geometry geometry = table.get(row); geometry.kind == ShapeKind::mesh) ++users[geometry.mesh];
+  size_t vertices = 0, triangles = 0;
+  std::vector<bool> counted(scene.meshes.size());
+  for (uint32_t row = 0; row < table.size(); ++row) {
+    const Geometry geometry = table.get(row);
+    if (geometry.kind == ShapeKind::rectangle) vertices += 4, triangles += 2;
+    if (geometry.kind != ShapeKind::mesh) continue;
+    const bool is_shared =
+        users[geometry.mesh] > 1 && geometry.flip_normal == 0 && !scene.registry.has<Light>(table.owner(row));
+    if (is_shared && counted[geometry.mesh]) continue;
+    if (is_shared) counted[geometry.mesh] = true;
+    vertices += scene.meshes[geometry.mesh].positions.size();
+    triangles += scene.meshes[geometry.mesh].indices.size() / 3;
+  }
+  constexpr size_t padding = 4;  // floats behind the last vertex, see build_geometry
+  world.positions.reserve(3 * vertices + padding);
+  world.normals.reserve(3 * vertices);
+  world.uvs.reserve(2 * vertices);
+  world.triangle_vertices.reserve(3 * triangles);
+}
+
+std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
+  return build(scene, nullptr, diagnostics);
+}
+
+std::unique_ptr<World> freeze(Scene&& scene, Diagnostics& diagnostics) { return build(scene, &scene, diagnostics); }
 
 }  // namespace metamer

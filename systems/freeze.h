@@ -11,6 +11,8 @@ namespace metamer {
 // Builds the world: transforms, materials by kind, geometry, lights, camera, acceleration structure. Mistakes go to
 // `diagnostics` with the place where the user made them; with errors among them the result is null.
 std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics);
+// The same, but meshes and images are given back as soon as the world has them: less memory while trees are built.
+std::unique_ptr<World> freeze(Scene&& scene, Diagnostics& diagnostics);
 
 // Object to world of every entity, by entity index. Errors: a cycle of parents, a singular or non-finite matrix.
 std::vector<glm::dmat4> build_transforms(const Scene& scene, Diagnostics& diagnostics);
@@ -45,6 +47,8 @@ std::vector<VolumeSides> build_volumes(const Scene& scene, World& world, Diagnos
 void build_mask(TextureId texture, World& world);
 // How the lights of the last object are found.
 void build_light_finding(World& world);
+// Room for all triangles: growing the columns mesh by mesh would copy them again and again. Meshes exist.
+void reserve_triangles(const Scene& scene, World& world);
 
 // Objects, vertices, quadrics, and the light rows of emitting shapes.
 void build_geometry(const Scene& scene, std::span<const glm::dmat4> to_world, std::span<const MaterialRow> materials,

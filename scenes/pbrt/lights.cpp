@@ -95,6 +95,8 @@ double target_factor(Parameters& parameters, std::string_view name, double per_u
 }
 
 void add_light(Reader& reader, Parameters& parameters, Light light, double scale, const glm::dmat4& transform) {
+  if (const std::string_view mistake = transform_mistake(transform); !mistake.empty())
+    return parameters.error("from", fmt::format("the light's transformation is {}", mistake));
   report_moving_light(reader, parameters.source());
   light.scale = to_light_scale(parameters, scale);
   Registry& registry = reader.scene.registry;

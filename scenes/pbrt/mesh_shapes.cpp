@@ -190,13 +190,11 @@ std::optional<ReadMesh> read_ply_mesh(Reader& reader, Parameters& parameters) {
   const std::string path = reader.resolve(name);
   const auto known = reader.files_of_meshes.find(path);
   if (known != reader.files_of_meshes.end()) return ReadMesh{known->second, 1};
-  Mesh mesh;
-  mesh.name = name;
-  if (!read_ply(path, parameters.messages().at(parameters.source()), mesh, reader.messages.diagnostics))
-    return std::nullopt;
-  const auto added = add_mesh(reader, parameters, std::move(mesh), 1);
-  if (added) reader.files_of_meshes.emplace(path, added->id);
-  return added;
+  const auto id = static_cast<MeshId>(reader.scene.meshes.size());
+  reader.scene.meshes.emplace_back();
+  reader.pending_files.push_back({path, parameters.messages().at(parameters.source()), id});
+  reader.files_of_meshes.emplace(path, id);
+  return ReadMesh{id, 1};
 }
 
 }  // namespace metamer::pbrt

@@ -15,6 +15,7 @@ struct ReadMesh {
 std::optional<ReadMesh> read_triangle_mesh(Reader& reader, Parameters& parameters);
 std::optional<ReadMesh> read_loop_mesh(Reader& reader, Parameters& parameters);
 std::optional<ReadMesh> read_bilinear_mesh(Reader& reader, Parameters& parameters);
+// Its mesh is empty until read_pending.
 std::optional<ReadMesh> read_ply_mesh(Reader& reader, Parameters& parameters);
 
 }  // namespace metamer::pbrt

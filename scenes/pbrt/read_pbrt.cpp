@@ -55,6 +55,7 @@ void finish(Reader& reader, Source whole_file) {
     reader.messages.error(whole_file, "there is no WorldBegin, so there is nothing to render");
     default_camera(reader, whole_file);
   }
+  read_pending(reader);
   report_open_blocks(reader);
   report_unmade_materials(reader);
   report_unmade_media(reader);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/ecs/scene.h"
+#include "scenes/images/read_image.h"
 #include "scenes/pbrt/parameters.h"
 
 namespace metamer::pbrt {
@@ -99,6 +100,15 @@ struct Instance {
   Source source;
 };
 
+// A mesh or an image whose place in the scene is known, but whose file has not been read yet.
+struct PendingFile {
+  std::string path;
+  SourceLocation named_at;
+  MeshId mesh = no_index;  // one of these
+  ImageId image = no_index;
+  ImageEncoding encoding = {};  // of an image
+};
+
 struct Reader {
   Scene& scene;
   Messages messages;
@@ -122,6 +132,8 @@ struct Reader {
   std::vector<Instance> instances = {};
   std::optional<OpenCurves> open_curves = {};
   std::map<std::string, MeshId> files_of_meshes = {};
+  std::vector<PendingFile> pending_files = {};
+  std::vector<TextureId> may_take_alpha = {};  // numbers that are their image's alpha if that turns out to have any
   Entity camera = {};
   double exposure_seconds = 1, iso = 100;
 
@@ -203,6 +215,9 @@ void read_light(Reader& reader, std::string_view kind, Parameters& parameters);
 // A light's scale in single precision; an error, and 0, if that overflows.
 float to_light_scale(Parameters& parameters, double scale);
 AreaLight read_area_light(Reader& reader, std::string_view kind, Parameters& parameters);
+
+// pending.cpp. Reads the pending files on all threads; messages come in the order of the statements.
+void read_pending(Reader& reader);
 
 // shapes.cpp
 void read_shape(Reader& reader, std::string_view kind, Parameters& parameters);

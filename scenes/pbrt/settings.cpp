@@ -58,6 +58,12 @@ void add_camera(Reader& reader, const Camera& camera, Source source) {
   reader.camera = reader.scene.registry.create();
   TransformPair camera_to_world{glm::inverse(reader.state.transform), glm::inverse(reader.state.end_transform)};
   if (!reader.state.transforms().moves()) camera_to_world.end = camera_to_world.start;
+  for (glm::dmat4* m : {&camera_to_world.start, &camera_to_world.end}) {
+    const std::string_view mistake = transform_mistake(*m);
+    if (mistake.empty()) continue;
+    reader.messages.error(source, fmt::format("the inverse of the camera's transformation is {}", mistake));
+    camera_to_world = {glm::dmat4(1), glm::dmat4(1)};
+  }
   reader.coordinate_systems["camera"] = camera_to_world;
   set_place(reader, reader.camera, camera_to_world);
   reader.scene.registry.set(reader.camera, camera);

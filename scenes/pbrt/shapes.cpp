@@ -104,6 +104,7 @@ std::optional<Shape> read_mesh_shape(Reader& reader, std::string_view kind, Para
   if (!read) return std::nullopt;
   Shape shape{{.kind = ShapeKind::mesh, .mesh = read->id}, 0};
   if (reader.state.area_light.power > 0) {
+    read_pending(reader);
     shape.area = mean_face_area(reader.scene.meshes[read->id], reader.state.transform, read->triangles_per_face);
   }
   return shape;

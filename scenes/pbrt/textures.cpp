@@ -59,7 +59,7 @@ bool has_extension(const std::string& name, std::string_view extension) {
 bool is_png(const std::string& name) { return has_extension(name, ".png"); }
 bool may_have_alpha(const std::string& name) { return is_png(name) || has_extension(name, ".exr"); }
 
-// Images are shared by name and encoding.
+// Images are shared by name and encoding. The new one is empty until read_pending.
 std::optional<ImageId> read_shared_image(Reader& reader, Parameters& parameters, std::string_view parameter,
                                          ImageEncoding encoding) {
   const std::string name = parameters.string(parameter, "");
@@ -72,11 +72,12 @@ std::optional<ImageId> read_shared_image(Reader& reader, Parameters& parameters,
   const std::string path = reader.resolve(name);
   const auto [known, fresh] = reader.images.try_emplace({path, encoding.gamma}, std::nullopt);
   if (!fresh) return known->second;
-  Image image;
-  if (!read_image(path, reader.messages.at(parameters.source()), image, reader.messages.diagnostics, encoding))
-    return std::nullopt;
-  reader.scene.images.push_back(std::move(image));
-  known->second = static_cast<ImageId>(reader.scene.images.size() - 1);
+  known->second = static_cast<ImageId>(reader.scene.images.size());
+  reader.scene.images.emplace_back();
+  reader.pending_files.push_back({.path = path,
+                                  .named_at = reader.messages.at(parameters.source()),
+                                  .image = *known->second,
+                                  .encoding = encoding});
   return known->second;
 }
 
@@ -97,10 +98,9 @@ std::optional<TextureId> imagemap(Reader& reader, Parameters& parameters, bool i
   const auto image = read_shared_image(reader, parameters, "filename", read_encoding(parameters));
   if (!image) return std::nullopt;
   texture.image = *image;
-  const bool has_alpha =
-      may_have_alpha(parameters.string("filename", "")) && !reader.scene.images[*image].alpha.empty();
-  if (is_number && has_alpha) texture.channel = TextureChannel::alpha;
-  return add_texture(reader, texture);
+  const TextureId id = add_texture(reader, texture);
+  if (is_number && may_have_alpha(parameters.string("filename", ""))) reader.may_take_alpha.push_back(id);
+  return id;
 }
 
 TextureId checkerboard(Reader& reader, Parameters& parameters, bool is_number) {

@@ -1,7 +1,5 @@
 // The commands of the program. They return an exit code or throw Failure.
 #pragma once
-#include <chrono>
-
 #include "scenes/program/command_line.h"
 
 namespace metamer {
@@ -9,8 +7,7 @@ namespace metamer {
 // The name under which an EXR remembers the exposure of its PNG, in stops.
 inline constexpr const char* exposure_setting = "exposure_stops";
 
-// `program_start` is when main began.
-int run_render(const RenderArguments& arguments, std::chrono::steady_clock::time_point program_start);
+int run_render(const RenderArguments& arguments);
 int run_develop(const DevelopArguments& arguments);
 int run_match(const MatchArguments& arguments);
 int run_metamers(const MetamersArguments& arguments);

@@ -107,12 +107,12 @@ Rendered render_as(const CompareArguments& arguments, ColorMode color) {
   const std::string& path = arguments.inputs[0];
   // What the reader remarks is the same both times.
   const bool quiet = arguments.quiet || color != ColorMode::spectral;
-  const LoadedScene loaded = load_scene(path, overrides, {quiet, arguments.strict});
+  LoadedScene loaded = load_scene(path, overrides, {quiet, arguments.strict});
   const RenderSettings& settings = loaded.scene.settings;
   const TileRect rendered_part = rendered_pixels(settings);
   if (const auto mistake = check_frame_size(rendered_part.width(), rendered_part.height()))
     throw Failure(exit_wrong_input, fmt::format("{}: {}", path, *mistake));
-  const BuiltWorld built = build_world(loaded, path, {quiet, arguments.strict});
+  const BuiltWorld built = build_world(std::move(loaded), path, {quiet, arguments.strict});
   Rendered rendered{Film(rendered_part.width(), rendered_part.height()), settings.exposure_stops, 0};
   RenderProgress progress;
   std::optional<ProgressReport> shown;

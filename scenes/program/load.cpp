@@ -51,6 +51,21 @@ size_t coated_bytes(const CoatedColumns& c) {
                   c.row_stride, c.last_pair, c.eta_least, c.rows_per_eta, c.albedos);
 }
 
+template <class S>
+BuiltWorld freeze_and_print(S&& scene, const std::string& path, Remarks remarks) {
+  const Clock::time_point start = Clock::now();
+  BuiltWorld built;
+  built.world = freeze(std::forward<S>(scene), built.diagnostics);
+  if (remarks.strict) built.diagnostics.apply_strict();
+  if (built.world == nullptr || built.diagnostics.has_errors()) {
+    print_diagnostics(built.diagnostics, path);
+    throw Failure(exit_wrong_input, "");
+  }
+  if (!remarks.quiet) print_diagnostics(built.diagnostics, path);
+  built.seconds = seconds_since(start);
+  return built;
+}
+
 }  // namespace
 
 LoadedScene load_scene(const std::string& path, const SceneOverrides& overrides, Remarks remarks) {
@@ -69,17 +84,10 @@ LoadedScene load_scene(const std::string& path, const SceneOverrides& overrides,
 }
 
 BuiltWorld build_world(const LoadedScene& loaded, const std::string& path, Remarks remarks) {
-  const Clock::time_point start = Clock::now();
-  BuiltWorld built;
-  built.world = freeze(loaded.scene, built.diagnostics);
-  if (remarks.strict) built.diagnostics.apply_strict();
-  if (built.world == nullptr || built.diagnostics.has_errors()) {
-    print_diagnostics(built.diagnostics, path);
-    throw Failure(exit_wrong_input, "");
-  }
-  if (!remarks.quiet) print_diagnostics(built.diagnostics, path);
-  built.seconds = seconds_since(start);
-  return built;
+  return freeze_and_print(loaded.scene, path, remarks);
+}
+BuiltWorld build_world(LoadedScene&& loaded, const std::string& path, Remarks remarks) {
+  return freeze_and_print(std::move(loaded.scene), path, remarks);
 }
 
 size_t world_bytes(const World& world) {

@@ -29,8 +29,10 @@ struct BuiltWorld {
   double seconds = 0;
 };
 
-// Freezes a scene that was read from `path`. Throws and prints as load_scene.
+// Freezes a scene that was read from `path`. Throws and prints as load_scene. What is not needed any more is best
+// handed over: its meshes and images are given back on the way.
 BuiltWorld build_world(const LoadedScene& loaded, const std::string& path, Remarks remarks);
+BuiltWorld build_world(LoadedScene&& loaded, const std::string& path, Remarks remarks);
 
 // Memory held by the columns of a world; Embree's trees are not among them.
 size_t world_bytes(const World& world);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <new>
@@ -27,13 +26,13 @@ void print_error(const std::string& message) {
   }
 }
 
-int run(const Command& command, std::chrono::steady_clock::time_point start) {
+int run(const Command& command) {
   if (const auto* text = std::get_if<ShowText>(&command)) {
     std::fputs(text->text.c_str(), stdout);
     return exit_done;
   }
   if (const std::string error = apply_isa_environment(); !error.empty()) throw Failure(exit_wrong_input, error);
-  if (const auto* render = std::get_if<RenderArguments>(&command)) return run_render(*render, start);
+  if (const auto* render = std::get_if<RenderArguments>(&command)) return run_render(*render);
   if (const auto* develop_it = std::get_if<DevelopArguments>(&command)) return run_develop(*develop_it);
   if (const auto* match = std::get_if<MatchArguments>(&command)) return run_match(*match);
   if (const auto* metamers = std::get_if<MetamersArguments>(&command)) return run_metamers(*metamers);
@@ -58,10 +57,10 @@ void open_standard_streams() {
     if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDWR) < 0) ::_exit(exit_failed);
 }
 
-int run_program(int argc, char** argv, std::chrono::steady_clock::time_point start) {
+int run_program(int argc, char** argv) {
   open_standard_streams();
   try {
-    return finish(run(parse_command_line(argc, argv), start));
+    return finish(run(parse_command_line(argc, argv)));
   } catch (const Failure& failure) {
     print_error(failure.what());
     return failure.code();
@@ -76,4 +75,4 @@ int run_program(int argc, char** argv, std::chrono::steady_clock::time_point sta
 }  // namespace
 }  // namespace metamer
 
-int main(int argc, char** argv) { return metamer::run_program(argc, argv, std::chrono::steady_clock::now()); }
+int main(int argc, char** argv) { return metamer::run_program(argc, argv); }

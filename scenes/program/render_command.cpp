@@ -20,8 +20,6 @@
 namespace metamer {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // Read by the signal handlers, so it lives as long as the program.
 Cancellation cancellation;
 
@@ -82,6 +80,8 @@ void tell_result(const FrameReport& report, bool quiet) {
   if (report.render.counters.lost_rays > 0)
     fmt::print(stderr, "metamer: warning: {} rays met more than {} interfaces between media and end there\n",
                report.render.counters.lost_rays, most_interfaces);
+  fmt::print(stderr, "metamer: first ray after {} ({} to read, {} to build)\n", short_time(report.first_ray_seconds),
+             short_time(report.load_seconds), short_time(report.build_seconds));
   const double seconds = report.render.render_seconds;
   const TileRect rendered = rendered_pixels(settings);
   fmt::print(stderr, "metamer: {}x{}, {} samples per pixel in {} on {} thread{} ({} samples/s)\n", rendered.width(),
@@ -110,13 +110,13 @@ void refuse_observer_without_bands(Observer observer, uint32_t band_count) {
 
 // Reads and builds; what was read is given back before the first ray.
 std::unique_ptr<World> make_world(const RenderArguments& arguments, const std::string& path, FrameReport& report) {
-  const LoadedScene loaded = load_scene(path, arguments.overrides, {arguments.quiet, arguments.strict});
+  LoadedScene loaded = load_scene(path, arguments.overrides, {arguments.quiet, arguments.strict});
   const RenderSettings& settings = loaded.scene.settings;
   const TileRect rendered = rendered_pixels(settings);
   refuse_frame_without_memory(rendered.width(), rendered.height(), settings.band_count, path);
   refuse_observer_without_bands(arguments.look.observer, settings.band_count);
-  BuiltWorld built = build_world(loaded, path, {arguments.quiet, arguments.strict});
   report.load_seconds = loaded.seconds;
+  BuiltWorld built = build_world(std::move(loaded), path, {arguments.quiet, arguments.strict});
   report.build_seconds = built.seconds;
   return std::move(built.world);
 }
@@ -131,15 +131,14 @@ float automatic_stops(const Film& film, const RenderArguments& arguments) {
   return stops;
 }
 
-void trace(const RenderArguments& arguments, const World& world, Film& film, FrameReport& report,
-           Clock::time_point program_start) {
+void trace(const RenderArguments& arguments, const World& world, Film& film, FrameReport& report) {
   RenderProgress progress;
   std::optional<ProgressReport> shown;
   if (!arguments.quiet) shown.emplace(progress, cancellation);
-  const double started_seconds = std::chrono::duration<double>(Clock::now() - program_start).count();
+  report.first_ray_seconds = process_age_seconds();
   report.render = render(world, {arguments.threads, arguments.tile_size}, cancellation, progress, film);
   shown.reset();
-  report.first_pixel_seconds = started_seconds + report.render.first_pixel_seconds;
+  report.first_pixel_seconds = report.first_ray_seconds + report.render.first_pixel_seconds;
   report.samples = sample_totals(film);
   report.invalid_samples = film.invalid_samples();
   report.is_interrupted = report.samples.fewest < world.settings.samples_per_pixel;
@@ -147,7 +146,7 @@ void trace(const RenderArguments& arguments, const World& world, Film& film, Fra
 
 }  // namespace
 
-int run_render(const RenderArguments& arguments, Clock::time_point program_start) {
+int run_render(const RenderArguments& arguments) {
   const std::string path = arguments.scene.empty() ? default_scene() : arguments.scene;
   const Outputs outputs = choose_outputs(arguments, path);
   check_outputs(outputs, path);
@@ -166,7 +165,7 @@ int run_render(const RenderArguments& arguments, Clock::time_point program_start
   report.film_bytes = film_bytes(rendered.width(), rendered.height(), world->settings.band_count);
   Film film(rendered.width(), rendered.height(), world->settings.band_count);
   save_when_interrupted();
-  trace(arguments, *world, film, report, program_start);
+  trace(arguments, *world, film, report);
   if (report.samples.total == 0) throw Failure(exit_failed, "interrupted before the first pixel; nothing was written");
 
   tell_result(report, arguments.quiet);

@@ -1,9 +1,13 @@
 #include "scenes/program/stats.h"
 
 #include <json/json.h>
+#include <unistd.h>
 
 #include <array>
+#include <ctime>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 
 #include "engine/simd/instruction_set.h"
 
@@ -51,6 +55,7 @@ Json::Value to_json(const FrameReport& report) {
   json["load_seconds"] = report.load_seconds;
   json["build_seconds"] = report.build_seconds;
   json["render_seconds"] = report.render.render_seconds;
+  json["first_ray_seconds"] = report.first_ray_seconds;
   json["first_pixel_seconds"] = report.first_pixel_seconds;
   json["cpu_seconds"] = report.render.cpu_seconds;
   json["embree_seconds"] = counters.embree_seconds;
@@ -70,6 +75,21 @@ size_t peak_rss_bytes() {
   for (std::string word; status >> word;)
     if (size_t kibibytes = 0; word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
   return 0;
+}
+
+double process_age_seconds() {
+  std::ifstream file("/proc/self/stat");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  // The program's name, field 2, may hold blanks. The time of the start is field 22, in clock ticks since the boot.
+  std::istringstream fields(text.substr(std::min(text.rfind(')') + 1, text.size())));
+  std::string skipped;
+  for (int i = 3; i < 22; ++i) fields >> skipped;
+  double start_ticks = 0;
+  if (!(fields >> start_ticks)) return 0;
+  timespec now{};
+  clock_gettime(CLOCK_BOOTTIME, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) -
+         start_ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
 FileError write_stats(const std::string& path, const FrameReport& report) {

@@ -15,7 +15,8 @@ struct FrameReport {
   SampleTotals samples;
   uint64_t invalid_samples = 0;
   double load_seconds = 0, build_seconds = 0;
-  double first_pixel_seconds = 0;  // from the program's start until the first tile was in the film
+  // From the process's start until rays are traced, and until the first tile was in the film.
+  double first_ray_seconds = 0, first_pixel_seconds = 0;
   size_t film_bytes = 0, world_bytes = 0;
   uint32_t tile_size = 0;
   bool is_interrupted = false;
@@ -23,6 +24,9 @@ struct FrameReport {
 
 // The largest resident memory of this program so far. Not getrusage's: that begins with what the parent held.
 size_t peak_rss_bytes();
+
+// How long ago this process was started, to a hundredth of a second: what loaded its libraries counts, too.
+double process_age_seconds();
 
 FileError write_stats(const std::string& path, const FrameReport& report);
 

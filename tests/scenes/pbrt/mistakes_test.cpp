@@ -175,6 +175,8 @@ INSTANTIATE_TEST_SUITE_P(
          "2: error: LightSource \"point\": the light is scaled by 1.10259e+60, which is too large"},
         {"LightSource \"distant\" \"point3 to\" [0 0 0]",
          "2: error: LightSource \"distant\": 'from' and 'to' coincide"},
+        {"Scale 1e30 1e30 1e30\nLightSource \"point\"\n\"point3 from\" [1e30 0 0]",
+         "4: error: LightSource \"point\": the light's transformation is too large for single precision"},
         {"AreaLightSource \"defuse\"", "2: error: there is no area light source \"defuse\" (did you mean 'diffuse'?)"},
     }));
 
@@ -201,6 +203,8 @@ INSTANTIATE_TEST_SUITE_P(
         {"Camera \"perspective\" \"float shutterclose\" 0",
          "1: error: Camera \"perspective\": the shutter closes at 0 s but opens at 0 s"},
         {"Camera \"perspective\"\nCamera \"perspective\"", "2: error: there is more than one Camera"},
+        {"Scale 1e-39 1e-39 1e-39\nCamera \"perspective\"",
+         "2: error: the inverse of the camera's transformation is too large for single precision"},
         {"Camera \"perspective\" \"float lensradius\" -1",
          "1: error: Camera \"perspective\": 'lensradius' is -1, but must be at least 0"},
         {"Film \"rgb\" \"integer xresolution\" 0",

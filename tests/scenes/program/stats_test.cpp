@@ -13,9 +13,9 @@ TEST_F(Reports, StatsHoldEveryDocumentedNumber) {
                 .exit_code,
             0);
   const Json::Value stats = parse_json(bytes("s.json"));
-  for (const char* name :
-       {"cpu_seconds", "load_seconds", "build_seconds", "render_seconds", "embree_seconds", "embree_share",
-        "first_pixel_seconds", "peak_rss_bytes", "lane_fill", "batch_bytes", "film_bytes", "world_bytes"}) {
+  for (const char* name : {"cpu_seconds", "load_seconds", "build_seconds", "render_seconds", "embree_seconds",
+                           "embree_share", "first_ray_seconds", "first_pixel_seconds", "peak_rss_bytes", "lane_fill",
+                           "batch_bytes", "film_bytes", "world_bytes"}) {
     ASSERT_TRUE(stats[name].isNumeric()) << name;
     EXPECT_GT(stats[name].asDouble(), 0) << name;
   }
@@ -30,7 +30,8 @@ TEST_F(Reports, StatsHoldEveryDocumentedNumber) {
   EXPECT_LE(stats["embree_share"].asDouble(), 1);
   EXPECT_NEAR(stats["embree_share"].asDouble(), stats["embree_seconds"].asDouble() / stats["cpu_seconds"].asDouble(),
               1e-6);
-  EXPECT_GT(stats["first_pixel_seconds"].asDouble(),
+  EXPECT_GT(stats["first_pixel_seconds"].asDouble(), stats["first_ray_seconds"].asDouble());
+  EXPECT_GT(stats["first_ray_seconds"].asDouble(),
             stats["load_seconds"].asDouble() + stats["build_seconds"].asDouble());
   for (const char* name : {"camera_rays", "intersect", "surface", "shadow", "accumulate"})
     EXPECT_GT(stats["systems"][name].asDouble(), 0) << name;
