@@ -80,6 +80,12 @@ std::string_view transform_mistake(const glm::dmat4& m) {
   return {};
 }
 
+glm::dmat4 affine_inverse(const glm::dmat4& m) {
+  glm::dmat4 inverse = glm::inverse(m);
+  for (int column = 0; column < 4; ++column) inverse[column][3] = column == 3 ? 1 : 0;
+  return inverse;
+}
+
 Transform to_component(const glm::dmat4& m) {
   const auto row = [&](int i) {
     return glm::vec4(static_cast<float>(m[0][i]), static_cast<float>(m[1][i]), static_cast<float>(m[2][i]),

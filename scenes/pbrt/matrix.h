@@ -24,6 +24,9 @@ glm::dmat4 frame_of_z(glm::dvec3 w);
 // Singular is a determinant below 1e-12 of the product of its columns' lengths.
 std::string_view transform_mistake(const glm::dmat4& m);
 
+// Of an affine matrix, whose inverse is affine to the last bit, too.
+glm::dmat4 affine_inverse(const glm::dmat4& m);
+
 Transform to_component(const glm::dmat4& m);
 
 }  // namespace metamer::pbrt

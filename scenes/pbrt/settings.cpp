@@ -56,7 +56,7 @@ Camera spherical_camera(Parameters& parameters) {
 void add_camera(Reader& reader, const Camera& camera, Source source) {
   if (!reader.camera.is_null()) reader.scene.registry.destroy(reader.camera);
   reader.camera = reader.scene.registry.create();
-  TransformPair camera_to_world{glm::inverse(reader.state.transform), glm::inverse(reader.state.end_transform)};
+  TransformPair camera_to_world{affine_inverse(reader.state.transform), affine_inverse(reader.state.end_transform)};
   if (!reader.state.transforms().moves()) camera_to_world.end = camera_to_world.start;
   for (glm::dmat4* m : {&camera_to_world.start, &camera_to_world.end}) {
     const std::string_view mistake = transform_mistake(*m);

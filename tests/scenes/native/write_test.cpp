@@ -1,5 +1,4 @@
 // What the writer says, and that nothing is lost.
-#include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -199,50 +198,6 @@ TEST(NativeWriter, SettingsAndCameraAreKept) {
   EXPECT_EQ(camera.focal_distance, 3);
   const Transform a = read.get<Transform>(), b = back.registry.get<Transform>(back.registry.table<Camera>().owner(0));
   EXPECT_EQ(std::memcmp(&a, &b, sizeof(a)), 0);
-  expect_converts(read.scene);
-}
-
-std::string image_file(const TemporaryFolder& folder, const std::string& name, bool is_float, int width = 4,
-                       int height = 2) {
-  const std::string path = (folder.path() / name).string();
-  const auto output = OIIO::ImageOutput::create(path);
-  const OIIO::ImageSpec spec(width, height, 3, is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
-  std::vector<float> pixels;
-  for (int i = 0; i < 3 * width * height; ++i) pixels.push_back(float(i) / 64);
-  EXPECT_TRUE(output->open(path, spec) && output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) && output->close());
-  return path;
-}
-
-TEST(NativeWriter, ImagesOfLightsAndPortalsAreKept) {
-  const TemporaryFolder images;
-  const std::string file = "\"string filename\" \"" + image_file(images, "glow.exr", true, 4, 4) + "\"";
-  const ReadScene read = read_world(
-      "LightSource \"infinite\" " + file +
-      " \"float scale\" 0.3\n"
-      "LightSource \"infinite\" \"rgb L\" [0.1 0.2 0.3] \"point3 portal\" [0.1 0 1  0.1 1.5 1  1.3 1.5 1  1.3 0 1]\n"
-      "Rotate 20 1 2 3 LightSource \"goniometric\" " +
-      file +
-      " \"float power\" 20 Translate 0.3 0 0\n"
-      "LightSource \"projection\" " +
-      file +
-      " \"float fov\" 33\n"
-      "Translate 0 0 3 AreaLightSource \"diffuse\" " +
-      file +
-      " Shape \"bilinearmesh\"\n"
-      "  \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0] \"point2 uv\" [0 0 1 0 0 1 1 1]\n");
-  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
-  ASSERT_EQ(read.count<Light>(), 5u);
-  const Scene back = converted(read.scene);
-  for (uint32_t row = 0; row < 5; ++row) {
-    const Light a = read.scene.registry.table<Light>().get(row), b = back.registry.table<Light>().get(row);
-    EXPECT_EQ(a.kind, b.kind) << row;
-    EXPECT_EQ(a.scale, b.scale) << row;
-    EXPECT_EQ(a.fov_deg, b.fov_deg) << row;
-    EXPECT_EQ(a.has_portal, b.has_portal) << row;
-    EXPECT_TRUE(a.portal_corner == b.portal_corner && a.portal_x == b.portal_x && a.portal_y == b.portal_y) << row;
-    EXPECT_EQ(a.image == no_index, b.image == no_index) << row;
-  }
-  ASSERT_NE(tiny_film(read.scene), nullptr);
   expect_converts(read.scene);
 }
 
