@@ -182,7 +182,8 @@ TEST(NativeMistakes, SpectraThatAreNone) {
     return messages_of_material("{\"type\": \"dielectric\", \"eta\": " + spectrum + "}");
   };
   EXPECT_THAT(messages("true"), HasSubstr("'eta' is true; expected a spectrum: a number, a name, or an object"));
-  EXPECT_THAT(messages("{}"), HasSubstr("expected 'constant', 'table', 'named', 'blackbody', 'daylight' or 'rgb'"));
+  EXPECT_THAT(messages("{}"), HasSubstr("expected 'constant', 'table', 'named', 'blackbody', 'daylight', 'rgb', "
+                                        "'samples' or 'sigmoid'"));
   EXPECT_THAT(messages("{\"constant\": 1, \"named\": \"BK7\"}"),
               HasSubstr("'constant' and 'named' exclude each other"));
   EXPECT_THAT(messages("{\"constant\": 1.5, \"space\": \"srgb\"}"), HasSubstr("'space' belongs to 'rgb' only"));
@@ -204,7 +205,8 @@ TEST(NativeMistakes, SpectraOfTheFile) {
                   "\"n\": {\"type\": \"diffuse\", \"reflectance\": \"hihg\"},\n"
                   "\"o\": {\"type\": \"dielectric\", \"eta\": \"high\"}}, \"entities\": []}"),
       "scene.json:2: error: unknown key 'blackbdy' in a spectrum (did you mean 'blackbody'?)\n"
-      "scene.json:2: error: expected 'constant', 'table', 'named', 'blackbody', 'daylight' or 'rgb'\n"
+      "scene.json:2: error: expected 'constant', 'table', 'named', 'blackbody', 'daylight', 'rgb', 'samples' or "
+      "'sigmoid'\n"
       "scene.json:3: error: unknown spectrum 'a'; entries of 'spectra' may name built-in spectra only\n"
       "scene.json:6: error: 'reflectance' reaches 2; expected values from 0 to 1 at every wavelength (in material "
       "'m')\n"
