@@ -210,8 +210,7 @@ TEST(NativeMistakes, SpectraOfTheFile) {
       "'sigmoid'\n"
       "scene.json:3: error: unknown spectrum 'a'; entries of 'spectra' may name built-in spectra only\n"
       "scene.json:6: error: 'reflectance' reaches 2; expected values from 0 to 1 at every wavelength (in material "
-      "'m')\n"
-      "scene.json:7: error: unknown spectrum 'hihg' (did you mean 'high'?) (in material 'n')\n");
+      "'m')\nscene.json:7: error: unknown spectrum 'hihg' (did you mean 'high'?) (in material 'n')\n");
 }
 
 TEST(NativeMistakes, MaterialsThatAreIncomplete) {
