@@ -55,7 +55,7 @@ void place_instances(Reader& reader) {
     const auto object = reader.objects.find(instance.object);
     if (object == reader.objects.end()) {
       reader.messages.error(instance.source, fmt::format("there is no object '{}'{}", instance.object,
-                                                         did_you_mean(instance.object, known)));
+                                                         guess(reader, instance.object, known)));
       continue;
     }
     Placed placed{instance, reader.scene.names.add(instance.object)};

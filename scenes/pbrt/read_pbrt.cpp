@@ -46,7 +46,7 @@ void report_unmade_materials(Reader& reader) {
   for (const auto& [name, material] : reader.materials) {
     if (material.defined) continue;
     reader.messages.error(material.first_use,
-                          fmt::format("there is no material '{}'{}", name, did_you_mean(name, made)));
+                          fmt::format("there is no material '{}'{}", name, guess(reader, name, made)));
   }
 }
 
@@ -65,6 +65,11 @@ void finish(Reader& reader, Source whole_file) {
 }
 
 }  // namespace
+
+std::string guess(const Reader& reader, std::string_view word, std::span<const std::string_view> known) {
+  constexpr size_t most_guesses = 100;  // as many mistakes as are printed
+  return reader.messages.diagnostics.error_count() < most_guesses ? did_you_mean(word, known) : std::string();
+}
 
 std::string Reader::resolve(const std::string& name) const {
   // As pbrt: relative to the first file, else to the working folder.

@@ -147,6 +147,9 @@ struct Reader {
   std::string resolve(const std::string& name) const;
 };
 
+// did_you_mean, but for the first mistakes only: there may be as many wrong names as right ones (read_pbrt.cpp).
+std::string guess(const Reader& reader, std::string_view word, std::span<const std::string_view> known);
+
 // Everything that a file says, until its end (directives.cpp).
 void read_directives(Reader& reader, Tokenizer& tokens);
 // The first file, Include and Import (read_pbrt.cpp).

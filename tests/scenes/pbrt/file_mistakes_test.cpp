@@ -158,6 +158,18 @@ TEST(PbrtValueMistakes, EveryTypeSaysWhatItExpects) {
   EXPECT_EQ(message("\"spectrum a\" [ [ ]"), "scene:3: error: 'spectrum a' expects numbers or a name, not '['");
 }
 
+TEST(PbrtGuesses, EndAfterAHundredMistakesAsEachComparesWithAllNames) {
+  std::string world = "MakeNamedMaterial \"blue\" \"string type\" \"diffuse\"\n";
+  for (int i = 0; i < 300; ++i)
+    world += std::string("NamedMaterial \"blue") + static_cast<char>('a' + i / 26) + static_cast<char>('a' + i % 26) +
+             "\"\n";
+  const ReadScene read = read_world(world);
+  size_t guesses = 0;
+  for (const Diagnostic& d : read.diagnostics.all()) guesses += d.message.find("did you mean") != std::string::npos;
+  EXPECT_EQ(read.diagnostics.error_count(), 300u);
+  EXPECT_EQ(guesses, 100u);
+}
+
 TEST(PbrtPower, ALightWithoutAreaCannotEmitIt) {
   const ReadScene read = read_world(
       "AreaLightSource \"diffuse\" \"float power\" 5\n"
