@@ -159,9 +159,14 @@ void JsonObject::check_keys(std::string_view what) const {
 
 std::string_view JsonObject::type() const { return spec_->name.substr(spec_->name.find('.') + 1); }
 
+bool JsonObject::knows(std::string_view key) const {
+  return spec_ != nullptr &&
+         std::any_of(spec_->keys.begin(), spec_->keys.end(), [&](const KeySpec& k) { return k.name == key; });
+}
+
 const Json::Value* JsonObject::find(std::string_view key) const {
   if (spec_ == nullptr) return nullptr;
-  assert(std::any_of(spec_->keys.begin(), spec_->keys.end(), [&](const KeySpec& k) { return k.name == key; }));
+  assert(knows(key));
   return find_member(value_, key);
 }
 

@@ -74,9 +74,12 @@ class JsonObject {
   const Json::Value& value() const { return value_; }
   std::string_view type() const;  // "sphere" of "geometry.sphere"
 
+  // Whether the spec has the key.
+  bool knows(std::string_view key) const;
   // The value of a key of the spec, or null.
   const Json::Value* find(std::string_view key) const;
-  bool has(std::string_view key) const { return find(key) != nullptr; }
+  // Whether the key is there; of a key that the spec does not have it is not.
+  bool has(std::string_view key) const { return knows(key) && find(key) != nullptr; }
   // The one key of several that is there; where none or more than one is, that is reported, and empty.
   std::string_view one_of(std::span<const std::string_view> keys) const;
 

@@ -178,7 +178,7 @@ void read_light(SceneContext& context, Entity entity, const Json::Value& value) 
     read_light_image(context, object, space, light);
     if (light.kind == LightKind::environment) read_portal(context, object, light);
     if (light.kind != LightKind::environment && light.image == no_index) return;  // reported
-    if (light.kind != LightKind::environment && object.has("lumens")) flux_per_lumen_unit = flux_of(context, light);
+    if (object.has("lumens")) flux_per_lumen_unit = flux_of(context, light);
     if (!(flux_per_lumen_unit > 0)) {
       context.reader.error(*object.find("image"), "'image' is black: it lets no 'lumens' out");
       flux_per_lumen_unit = 1;

@@ -54,7 +54,7 @@ class TextureReader {
   TextureId read() {
     for (const Pattern& known : patterns)
       if (object_.type() == known.type) return pattern(known.kind);
-    texture_.is_number = object_.boolean("number", false) ? 1 : 0;
+    texture_.is_number = object_.knows("number") && object_.boolean("number", false) ? 1 : 0;
     if (object_.type() == "constant") {
       value();
     } else if (object_.type() == "image") {

@@ -54,6 +54,7 @@ std::optional<ImageId> read_shared_image(SceneContext& context, const Json::Valu
 }
 
 void read_bump(SceneContext& context, const JsonObject& object, Material& material) {
+  if (!object.knows("displacement")) return;  // a mix is bumpy where its parts are
   const Json::Value* displacement = object.find("displacement");
   const Json::Value* map = object.find("normal_map");
   if (displacement != nullptr && map != nullptr)
