@@ -155,7 +155,8 @@ const ImageFile& WriteContext::texture_image_file(ImageId id) {
   ImageEncoding likely = texture_encoding(image.name), other = likely;
   (holds_floats ? likely : other).gamma = 1;
   const bool is_likely = is_file(image, likely, true), is_other = !is_likely && is_file(image, other, true);
-  return add_image_file(id, is_likely || is_other, is_likely ? holds_floats : is_other && !holds_floats);
+  const bool is_copy = is_likely || is_other;
+  return add_image_file(id, is_copy, !is_copy || is_likely == holds_floats);
 }
 
 const ImageFile& WriteContext::light_image_file(ImageId id) {

@@ -36,7 +36,7 @@ struct ImageFile {
   ImageId id;
   std::string name;
   bool is_copy;            // of the file that the image was read from
-  bool is_linear = false;  // a copy whose integers were not encoded in sRGB
+  bool is_linear = false;  // to be read as linear: floats, or integers without sRGB
 };
 
 struct WriteContext {
