@@ -137,11 +137,11 @@ struct Material {
   uint32_t priority = 0;    // up to largest_priority; 0: not followed; the index is against whatever is around
   uint32_t thin = 0;
   float thickness = 0;  // metres; of a thin one with kappa
-  Layer layer;
+  Layer layer{};
   SpectrumId transmittance = 0;
   TextureId transmittance_texture = no_index;  // in place of `transmittance`
-  Mix mix;
-  Hair hair;
+  Mix mix{};
+  Hair hair{};
   static constexpr auto fields = std::make_tuple(
       &Material::kind, &Material::reflectance, &Material::reflectance_texture, &Material::alpha_x_texture,
       &Material::alpha_y_texture, &Material::displacement, &Material::normal_map, &Material::eta, &Material::kappa,
