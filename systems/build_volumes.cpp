@@ -30,12 +30,6 @@ bool check_medium(const Scene& scene, Entity entity, const Medium& medium, const
   return diagnostics.error_count() == before;
 }
 
-double mean(const Grid& grid, size_t channel) {
-  double sum = 0;
-  for (size_t i = channel; i < grid.values.size(); i += grid.channels) sum += double{grid.values[i]};
-  return sum * grid.channels / static_cast<double>(grid.values.size());
-}
-
 // Whether some wavelength is scattered or absorbed sooner than another.
 bool is_chromatic(const Medium& medium, const World& world) {
   const SpectrumSet& spectra = world.spectra;
@@ -74,24 +68,21 @@ Medium homogeneous_medium(const Scene& scene, Entity entity, SpectrumSet& spectr
     diagnostics.warning(scene.location(entity),
                         fmt::format("medium {}: grids are not supported yet; {}", scene.describe(entity), instead));
   };
-  if (grid.file != no_index) {
-    warn("its file is not read, it is rendered as empty space");
-    return {};
-  }
   warn("it is rendered as homogeneous, with the means of its grids");
   const auto tint = [&](GridId id, SpectrumId& spectrum) {
     if (id == no_index) return;
     const Grid& colour = scene.grids[id];
-    const Color3 rgb = {mean(colour, 0), mean(colour, 1), mean(colour, 2)};
+    const glm::dvec3 mean = grid_mean(colour);
+    const Color3 rgb = {mean.x, mean.y, mean.z};
     spectrum = spectra.product(spectrum, spectra.add_rgb(rgb, RgbKind::unbounded, colour.color_space).id).id;
   };
-  if (grid.density != no_index) medium.scale *= static_cast<float>(mean(scene.grids[grid.density], 0));
+  if (grid.density != no_index) medium.scale *= static_cast<float>(grid_mean(scene.grids[grid.density]).x);
   tint(grid.sigma_a, medium.sigma_a);
   tint(grid.sigma_s, medium.sigma_s);
   if (grid.emission != no_index && scene.grids[grid.emission].channels == 3) {
     tint(grid.emission, medium.emission);
   } else if (grid.emission != no_index) {
-    medium.emission_scale *= static_cast<float>(mean(scene.grids[grid.emission], 0));
+    medium.emission_scale *= static_cast<float>(grid_mean(scene.grids[grid.emission]).x);
   }
   return medium;
 }

@@ -237,21 +237,28 @@ struct Medium {
                                                  &Medium::emission, &Medium::emission_scale);
 };
 
-// How the Medium of the same entity varies in space: factors on it, from grids that fill the box from `lower` to
-// `upper` in the entity's local space, nothing outside. Handles are no_index where there is no grid. `density`
-// multiplies both sigmas, `sigma_a` and `sigma_s` (three numbers per cell, unbounded rgb) each its own; `emission` (one
-// or three) multiplies the emission. `temperature`, kelvin after (T - temperature_offset) temperature_scale, stands for
-// an emission of its own. With `file` the grids are those of that name in a NanoVDB file, in its coordinates.
+// Between the centres of voxels: trilinear, or one of the eight around, by chance, with the trilinear weights.
+enum class GridLookup : uint32_t { trilinear, stochastic };
+// What a temperature grid glows with: Planck's law as it is, W m^-2 sr^-1 nm^-1, or divided by its peak.
+enum class BlackbodyUnit : uint32_t { radiance, peak };
+
+// How the Medium of the same entity varies in space: factors on it, from grids in the entity's local space; nothing
+// outside the box from `lower` to `upper`. Handles are no_index where there is no grid; media may share theirs.
+// `density` multiplies both sigmas, `sigma_a` and `sigma_s` (one number per voxel, or unbounded RGB) each its own;
+// `emission` (one or three) multiplies what glows. Without `temperature` that is the medium's emission; with it a
+// blackbody of (T - temperature_offset) temperature_scale kelvin, in `blackbody`'s unit, nothing at or below 100 K. The
+// medium's `scale` and `emission_scale` hold in any case.
 struct MediumGrid {
   GridId density = no_index, sigma_a = no_index, sigma_s = no_index;
   GridId emission = no_index, temperature = no_index;
   glm::vec3 lower{0, 0, 0}, upper{1, 1, 1};
   float temperature_offset = 0, temperature_scale = 1;
-  NameId file = no_index;
+  BlackbodyUnit blackbody = BlackbodyUnit::radiance;
+  GridLookup lookup = GridLookup::trilinear;
   static constexpr auto fields =
       std::make_tuple(&MediumGrid::density, &MediumGrid::sigma_a, &MediumGrid::sigma_s, &MediumGrid::emission,
                       &MediumGrid::temperature, &MediumGrid::lower, &MediumGrid::upper, &MediumGrid::temperature_offset,
-                      &MediumGrid::temperature_scale, &MediumGrid::file);
+                      &MediumGrid::temperature_scale, &MediumGrid::blackbody, &MediumGrid::lookup);
 };
 
 // Entities with a Medium on both sides of a surface: a ray that crosses it is in that of the side it goes to, whatever

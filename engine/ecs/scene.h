@@ -12,6 +12,7 @@
 
 #include "engine/diagnostics.h"
 #include "engine/ecs/components.h"
+#include "engine/ecs/grid.h"
 #include "engine/sampling/filters.h"
 #include "engine/schedule/tiles.h"
 #include "engine/spectrum/color_mode.h"
@@ -44,14 +45,6 @@ struct Image {
   std::vector<float> alpha;  // width * height, or none: 1 everywhere
   ImageMapping mapping = ImageMapping::latitude_longitude;
   ColorSpace color_space = ColorSpace::srgb;
-};
-
-// Values at the centres of nx by ny by nz cells, x fastest.
-struct Grid {
-  uint32_t nx = 1, ny = 1, nz = 1;
-  uint32_t channels = 1;  // or 3: linear RGB
-  ColorSpace color_space = ColorSpace::srgb;
-  std::vector<float> values;  // channels * nx * ny * nz
 };
 
 struct Filter {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <glm/common.hpp>
 
 #include "engine/spectrum/embedded_data.h"
 #include "scenes/pbrt/matrix.h"
@@ -106,8 +107,14 @@ Medium read_homogeneous(Reader& reader, Parameters& parameters) {
 }
 
 struct GridShape {
-  uint32_t nx = 1, ny = 1, nz = 1;
-  size_t cells() const { return size_t{nx} * ny * nz; }
+  glm::ivec3 cells{1};
+  glm::dvec3 lower{0}, upper{1};
+  size_t count() const { return size_t(cells.x) * size_t(cells.y) * size_t(cells.z); }
+  // The centre of cell (0, 0, 0) is half a cell from the lower corner.
+  glm::dmat4 index_to_local() const {
+    const glm::dvec3 cell = (upper - lower) / glm::dvec3(cells);
+    return translation(lower + 0.5 * cell) * scaling(cell);
+  }
 };
 
 // The values of a parameter as a grid; no_index if it is absent or wrong.
@@ -117,28 +124,33 @@ GridId read_grid(Reader& reader, Parameters& parameters, std::string_view name, 
   const Parameter* parameter = parameters.find(name, type);
   if (parameter == nullptr) return no_index;
   const std::vector<double>& numbers = parameter->numbers;
-  if (numbers.size() != channels * shape.cells()) {
+  if (numbers.size() != channels * shape.count()) {
     parameters.error(name, fmt::format("'{}' has {} values; expected nx * ny * nz = {}{}", name, numbers.size(),
-                                       shape.cells(), channels == 3 ? " times 3" : ""));
+                                       shape.count(), channels == 3 ? " times 3" : ""));
     return no_index;
   }
   if (*std::min_element(numbers.begin(), numbers.end()) < 0) {
     parameters.error(name, fmt::format("'{}' has negative values", name));
     return no_index;
   }
-  Grid grid{shape.nx, shape.ny, shape.nz, channels, parameter->color_space, {}};
-  grid.values.assign(numbers.begin(), numbers.end());
+  Grid grid;
+  grid.name = name;
+  grid.stored_as = channels == 3 ? "rgb" : "float";
+  grid.channels = channels;
+  grid.color_space = parameter->color_space;
+  grid.index_to_local = shape.index_to_local();
+  set_dense_values(grid, shape.cells, std::vector<float>(numbers.begin(), numbers.end()));
   reader.scene.grids.push_back(std::move(grid));
   return static_cast<GridId>(reader.scene.grids.size() - 1);
 }
 
 GridShape read_box(Parameters& parameters, MediumGrid& grid) {
-  const auto count = [&](std::string_view name) { return static_cast<uint32_t>(parameters.integer(name, 1, 1)); };
-  const GridShape shape{count("nx"), count("ny"), count("nz")};
+  const auto count = [&](std::string_view name) { return static_cast<int>(parameters.integer(name, 1, 1)); };
   const glm::dvec3 a = parameters.point3("p0", glm::dvec3(0)), b = parameters.point3("p1", glm::dvec3(1));
+  const GridShape shape{{count("nx"), count("ny"), count("nz")}, glm::min(a, b), glm::max(a, b)};
+  grid.lower = glm::vec3(shape.lower);
+  grid.upper = glm::vec3(shape.upper);
   for (int i = 0; i < 3; ++i) {
-    grid.lower[i] = static_cast<float>(std::min(a[i], b[i]));
-    grid.upper[i] = static_cast<float>(std::max(a[i], b[i]));
     if (grid.lower[i] == grid.upper[i]) return parameters.error("p1", "the box from 'p0' to 'p1' has no volume"), shape;
   }
   return shape;
@@ -148,6 +160,7 @@ void read_temperature(Parameters& parameters, MediumGrid& grid) {
   const double cutoff = parameters.number("temperaturecutoff", 0);
   grid.temperature_offset = static_cast<float>(parameters.number("temperatureoffset", cutoff));
   grid.temperature_scale = static_cast<float>(parameters.number_from("temperaturescale", 1, 0));
+  grid.blackbody = BlackbodyUnit::peak;
 }
 
 Medium read_uniform_grid(Reader& reader, Parameters& parameters, MediumGrid& grid) {
@@ -198,12 +211,13 @@ Medium read_nanovdb(Reader& reader, Parameters& parameters, MediumGrid& grid) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored))
       parameters.error("filename", fmt::format("there is no file '{}'", path));
-    grid.file = reader.scene.names.add(path);
   }
+  parameters.messages().warning(parameters.source(), "files of grids are not read yet; it is rendered as empty space");
   read_coefficients(reader, parameters, unit_spectrum, unit_spectrum, medium);
   read_temperature(parameters, grid);
   read_emission_scale(parameters, medium);
   read_common(parameters, medium);
+  medium.scale = 0;
   return medium;
 }
 
