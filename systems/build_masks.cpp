@@ -6,9 +6,9 @@ void build_mask(TextureId texture, World& world) {
   if (texture == no_index) return;
   const TextureProgram program = world.textures.programs[texture];
   const TextureOp& first = world.textures.ops[program.begin];
-  if (program.end - program.begin == 1 && first.code == TextureOpcode::number) {
-    if (first.number <= 0) world.objects.visibility.back() = 0;
-    if (first.number <= 0 || first.number >= 1) return;
+  if (program.end - program.begin == 1 && first.kind == TextureKind::constant) {
+    if (first.value <= 0) world.objects.visibility.back() = 0;
+    if (first.value <= 0 || first.value >= 1) return;
   }
   world.objects.alpha.back() = texture;
   world.has_masks = true;

@@ -93,41 +93,10 @@ void add_image(Builder& b, const Image& image, uint32_t& row) {
   std::copy(texels.begin(), texels.end(), b.set.texels.begin() + static_cast<ptrdiff_t>(begin));
 }
 
-TextureOpcode opcode(const Texture& t) {
-  switch (t.kind) {
-    case TextureKind::constant: return t.is_number != 0 ? TextureOpcode::number : TextureOpcode::spectrum;
-    case TextureKind::image: return t.is_number != 0 ? TextureOpcode::number_image : TextureOpcode::image;
-    case TextureKind::scale: return TextureOpcode::multiply;
-    case TextureKind::mix: return TextureOpcode::mix;
-    case TextureKind::checkerboard: return TextureOpcode::checkerboard;
-    case TextureKind::coordinate: return TextureOpcode::coordinate;
-    case TextureKind::facing: return TextureOpcode::facing;
-    case TextureKind::dots: return TextureOpcode::dots;
-    case TextureKind::fbm: return TextureOpcode::fbm;
-    case TextureKind::wrinkled: return TextureOpcode::wrinkled;
-    case TextureKind::windy: return TextureOpcode::windy;
-    case TextureKind::marble: return TextureOpcode::marble;
-    case TextureKind::square_root: return TextureOpcode::square_root;
-  }
-  return TextureOpcode::number;
-}
-
 TextureOp make_op(Builder& b, const Texture& t) {
-  TextureOp op;
-  op.spectrum = t.spectrum;
-  op.number = t.kind == TextureKind::constant ? t.value : t.scale;
-  op.wrap = t.wrap;
-  op.nearest = t.nearest;
-  op.invert = t.invert;
-  op.mapping = t.mapping;
-  op.axis = t.axis;
-  std::copy_n(t.axis_direction, 3, op.axis_direction);
-  op.octaves = t.octaves;
-  op.roughness = t.roughness;
-  op.variation = t.variation;
-  op.code = opcode(t);
-  if (op.code == TextureOpcode::number_image) op.image = add_number_image(b, t.image, t.channel);
-  if (op.code == TextureOpcode::image) {
+  TextureOp op = t;
+  if (t.kind == TextureKind::image && t.is_number != 0) op.image = add_number_image(b, t.image, t.channel);
+  if (t.kind == TextureKind::image && t.is_number == 0) {
     add_image(b, b.scene.images[t.image], b.image_rows[t.image]);
     op.image = b.image_rows[t.image];
   }

@@ -117,7 +117,7 @@ HWY_INLINE void image_spectrum(const TextureSet& set, const TextureOp& op, const
   }
   const TexelIndex texel = wrapped(hn::Floor(x), hn::Floor(y), image, op.wrap);
   look_up(set, image, texel, point, out);
-  const VF factor = hn::IfThenElseZero(texel.inside, splat(op.number));
+  const VF factor = hn::IfThenElseZero(texel.inside, splat(op.scale));
   for (int j = 0; j < 4; ++j) {
     const VF value = hn::Mul(factor, out[j]);
     out[j] = op.invert != 0 ? hn::Max(hn::Sub(splat(1.0f), value), hn::Zero(FloatTag())) : value;
@@ -162,11 +162,11 @@ HWY_INLINE VF image_number(const TextureSet& set, const TextureOp& op, const Tex
   const float* numbers = set.numbers.data() + image.first_texel;
   for (int k = 0; k < 4; ++k) texel[k] = hn::IfThenElseZero(square.inside[k], gather(numbers, square.index[k]));
   const VF upper = between(texel[0], texel[1], square.right), lower = between(texel[2], texel[3], square.right);
-  const VF value = hn::Mul(splat(op.number), between(upper, lower, square.lower));
+  const VF value = hn::Mul(splat(op.scale), between(upper, lower, square.lower));
   if (slopes != nullptr) {
     const VF along_x = between(hn::Sub(texel[1], texel[0]), hn::Sub(texel[3], texel[2]), square.lower);
     const MF flat = op.nearest != 0 ? hn::Eq(zero, zero) : hn::Ge(value, splat(op.invert != 0 ? 1.0f : FLT_MAX));
-    const VF scale = splat(op.invert != 0 ? -op.number : op.number);
+    const VF scale = splat(op.invert != 0 ? -op.scale : op.scale);
     slopes[0] = hn::IfThenZeroElse(flat, hn::Mul(hn::Mul(scale, splat(static_cast<float>(image.width))), along_x));
     slopes[1] = hn::IfThenZeroElse(
         flat, hn::Mul(hn::Mul(scale, splat(static_cast<float>(image.height))), hn::Sub(upper, lower)));
@@ -183,14 +183,14 @@ HWY_INLINE void marble(const TextureSet& set, const TextureOp& op, const Texture
 
 // Images and patterns that are plain numbers.
 HWY_INLINE VF pattern(const TextureSet& set, const TextureOp& op, const TexturePoint& point) {
-  if (op.code == TextureOpcode::number_image) return image_number(set, op, point, nullptr);
-  if (op.code == TextureOpcode::facing) return hn::Abs(dot(point.normal, splat_vec3(op.axis_direction)));
+  if (op.kind == TextureKind::image) return image_number(set, op, point, nullptr);
+  if (op.kind == TextureKind::facing) return hn::Abs(dot(point.normal, splat_vec3(op.axis_direction)));
   const Vec3 p = map_point(op.mapping, point);
-  switch (op.code) {
-    case TextureOpcode::coordinate: return op.axis == 0 ? p.x : op.axis == 1 ? p.y : p.z;
-    case TextureOpcode::dots: return dots(p);
-    case TextureOpcode::fbm: return fbm(p, op.roughness, op.octaves);
-    case TextureOpcode::wrinkled: return turbulence(p, op.roughness, op.octaves);
+  switch (op.kind) {
+    case TextureKind::coordinate: return op.axis == 0 ? p.x : op.axis == 1 ? p.y : p.z;
+    case TextureKind::dots: return dots(p);
+    case TextureKind::fbm: return fbm(p, op.roughness, op.octaves);
+    case TextureKind::wrinkled: return turbulence(p, op.roughness, op.octaves);
     default: return windy(p);
   }
 }
@@ -248,7 +248,7 @@ HWY_INLINE void set_pattern(const TextureSet& set, const TextureOp& op, const Te
                             VF out[row_size(result)]) {
   if constexpr (result != TextureResult::slopes) {
     set_number<result>(pattern(set, op, points[0]), out);
-  } else if (op.code == TextureOpcode::number_image && op.mapping.kind == TextureMapping::Kind::uv) {
+  } else if (op.kind == TextureKind::image && op.mapping.kind == TextureMapping::Kind::uv) {
     out[0] = image_number(set, op, points[0], out + 1);
     out[1] = hn::Mul(out[1], splat(op.mapping.u_scale));
     out[2] = hn::Mul(out[2], splat(op.mapping.v_scale));
@@ -270,40 +270,43 @@ HWY_INLINE void run_program(const World& world, const TextureProgram& program, c
   MF is_a;
   for (uint32_t i = program.begin; i < program.end; ++i) {
     const TextureOp& op = set.ops[i];
-    switch (op.code) {
-      case TextureOpcode::spectrum:
+    const bool is_number = op.is_number != 0;
+    switch (op.kind) {
+      case TextureKind::constant:
+        if (is_number) set_number<result>(splat(op.value), stack[top++]);
         if constexpr (is_spectrum)
-          eval_spectrum4(world.spectra.view(), splat_u(op.spectrum), points->lambda_nm, stack[top++]);
+          if (!is_number) eval_spectrum4(world.spectra.view(), splat_u(op.spectrum), points->lambda_nm, stack[top++]);
         break;
-      case TextureOpcode::image:
-        if constexpr (is_spectrum) image_spectrum(set, op, *points, i - program.begin, stack[top++]);
-        break;
-      case TextureOpcode::marble:
+      case TextureKind::marble:
         if constexpr (is_spectrum) marble(set, op, *points, stack[top++]);
         break;
-      case TextureOpcode::number: set_number<result>(splat(op.number), stack[top++]); break;
-      case TextureOpcode::number_image:
-      case TextureOpcode::coordinate:
-      case TextureOpcode::facing:
-      case TextureOpcode::dots:
-      case TextureOpcode::fbm:
-      case TextureOpcode::wrinkled:
-      case TextureOpcode::windy: set_pattern<result>(set, op, points, stack[top++]); break;
-      case TextureOpcode::multiply:
+      case TextureKind::image:
+        if (!is_number) {
+          if constexpr (is_spectrum) image_spectrum(set, op, *points, i - program.begin, stack[top++]);
+          break;
+        }
+        [[fallthrough]];
+      case TextureKind::coordinate:
+      case TextureKind::facing:
+      case TextureKind::dots:
+      case TextureKind::fbm:
+      case TextureKind::wrinkled:
+      case TextureKind::windy: set_pattern<result>(set, op, points, stack[top++]); break;
+      case TextureKind::scale:
         --top;
         multiply<result>(stack[top - 1], stack[top]);
         break;
-      case TextureOpcode::mix:
+      case TextureKind::mix:
         top -= 2;
         mix<result>(stack[top - 1], stack[top], stack[top + 1]);
         break;
-      case TextureOpcode::checkerboard:  // its steps have no slope
+      case TextureKind::checkerboard:  // its steps have no slope
         --top;
         is_a = hn::Gt(checkerboard(map_point(op.mapping, *points)), hn::Zero(FloatTag()));
         for (int j = 0; j < row_size(result); ++j)
           stack[top - 1][j] = hn::IfThenElse(is_a, stack[top - 1][j], stack[top][j]);
         break;
-      case TextureOpcode::square_root: square_root<result>(stack[top - 1]); break;
+      case TextureKind::square_root: square_root<result>(stack[top - 1]); break;
     }
   }
   for (int j = 0; j < row_size(result); ++j) out[j] = stack[0][j];

@@ -83,7 +83,7 @@ HWY_INLINE VF windy(const Vec3& p) { return hn::Mul(hn::Abs(fbm(p * splat(0.1f),
 
 // Where in the row of marble's colours the point lies, from 0 to 1.
 HWY_INLINE VF marble_phase(const TextureOp& op, const Vec3& p) {
-  const Vec3 scaled = p * splat(op.number);
+  const Vec3 scaled = p * splat(op.scale);
   const VF angle = hn::MulAdd(splat(op.variation), fbm(scaled, op.roughness, op.octaves), scaled.y);
   return hn::MulAdd(sincos(angle).sin, splat(0.5f), splat(0.5f));
 }

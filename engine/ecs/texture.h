@@ -58,12 +58,13 @@ struct TextureMapping {
   float u_axis[3] = {1, 0, 0}, v_axis[3] = {0, 1, 0};
 };
 
-struct Texture {
+// What a texture is, but for its operands.
+struct TextureOp {
   TextureKind kind = TextureKind::constant;
   uint32_t spectrum = 0;  // SpectrumId
   float value = 0;
   uint32_t is_number = 0;                            // 1: a number (roughness, amount), 0: a reflectance
-  uint32_t image = 0;                                // ImageId
+  uint32_t image = 0;                                // ImageId; in programs a row of TextureSet::images
   TextureChannel channel = TextureChannel::average;  // of a number
   TextureWrap wrap = TextureWrap::repeat;
   uint32_t nearest = 0;  // 1: the nearest texel, 0: linear between texels
@@ -74,40 +75,12 @@ struct Texture {
   float axis_direction[3] = {0, 1, 0};
   uint32_t octaves = 8;
   float roughness = 0.5f, variation = 0.2f;
+};
+
+// A node. As an operation of a program it takes its operands (none to three) from the stack, in the order a, b, amount,
+// and leaves its value there.
+struct Texture : TextureOp {
   TextureId a = 0, b = 0, amount = 0;  // earlier textures
-};
-
-enum class TextureOpcode : uint32_t {
-  spectrum,
-  number,
-  image,
-  number_image,
-  multiply,
-  mix,
-  checkerboard,
-  coordinate,
-  facing,
-  dots,
-  fbm,
-  wrinkled,
-  windy,
-  marble,
-  square_root,
-};
-
-// Takes its operands from the stack (none to three of them, in the order a, b, amount) and leaves its value there.
-struct TextureOp {
-  TextureOpcode code = TextureOpcode::number;
-  uint32_t spectrum = 0;
-  float number = 0;
-  uint32_t image = 0;  // row of TextureSet::images
-  TextureWrap wrap = TextureWrap::repeat;
-  uint32_t nearest = 0, invert = 0;
-  TextureMapping mapping;
-  uint32_t axis = 0;
-  float axis_direction[3] = {};
-  uint32_t octaves = 0;
-  float roughness = 0, variation = 0;
 };
 inline constexpr uint32_t deepest_texture_stack = 16;
 
