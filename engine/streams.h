@@ -198,6 +198,7 @@ struct Slots {
   Columns<float, 4> lambda_nm, inv_pdf_nm;
   Columns<float, 4> radiance;  // W m^-2 sr^-1 nm^-1, each wavelength on its own; in RGB mode a channel's, cd/m^2
   uint32_t *pixel, *sample;    // pixel of the tile (row-major), or dead_lane outside the picture; sample index
+  float limit = std::numeric_limits<float>::infinity();  // of the mean radiance of what is being added; pipeline
 };
 
 // Rays that wait for their turn: nodes of ray trees (recursive). Those of one depth lie together, the deepest last, and

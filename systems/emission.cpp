@@ -12,10 +12,12 @@ namespace {
 HWY_INLINE void add_radiance(MF mask, const ShadeStream& shade, size_t i, const VF radiance[4], VF weight,
                              Slots& slots) {
   const VU slot = load(shade.slot, i);
-  for (size_t j = 0; j < 4; ++j) {
-    const VF seen = hn::Mul(hn::Mul(load(shade.throughput[j], i), radiance[j]), weight);
-    add_to_slots(mask, seen, slots.radiance[j], slot);
-  }
+  VF seen[4];
+  for (size_t j = 0; j < 4; ++j) seen[j] = hn::Mul(hn::Mul(load(shade.throughput[j], i), radiance[j]), weight);
+  const VF mean = hn::Mul(hn::Add(hn::Add(seen[0], seen[1]), hn::Add(seen[2], seen[3])), splat(0.25f));
+  const VF limit = splat(slots.limit);
+  const VF kept = hn::IfThenElse(hn::Gt(mean, limit), hn::Div(limit, mean), splat(1.0f));
+  for (size_t j = 0; j < 4; ++j) add_to_slots(mask, hn::Mul(seen[j], kept), slots.radiance[j], slot);
 }
 
 // 1 where light sampling could not have found the light: straight from the camera, or after a mirror. Without shadows

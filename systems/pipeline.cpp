@@ -25,6 +25,11 @@ class StageClock {
   Clock::time_point last_;
 };
 
+// Contributions of light that was scattered so often on its way from the source to the camera.
+void limit_light(const World& world, uint32_t scatterings, Slots& slots) {
+  slots.limit = scatterings > 1 ? world.indirect_limit : std::numeric_limits<float>::infinity();
+}
+
 void count_lanes(const ShadeStream& shade, uint32_t paths, Counters& counters) {
   counters.lanes += shade.size;
   counters.live_lanes += paths;
@@ -32,6 +37,7 @@ void count_lanes(const ShadeStream& shade, uint32_t paths, Counters& counters) {
 
 // What the rays of the batch meet.
 void find_surfaces(const World& world, uint32_t depth, Batch& batch, StageClock& clock, Counters& counters) {
+  limit_light(world, depth, batch.slots);
   PathStream& paths = batch.paths;
   if (depth == 0) {
     intersect_camera(world, paths, batch.hits, &counters.embree_seconds);
@@ -69,6 +75,7 @@ void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, C
 // Light on rough surfaces by the light samples that are in the stream.
 void weigh_lights(const World& world, const ShadeWork& work, Batch& batch, StageClock& clock, Counters& counters) {
   batch.shadow.size = 0;
+  limit_light(world, work.depth + 1, batch.slots);
   shade_rough_kinds(world, work, batch.shade, batch.shadow);
   clock.charge(SystemId::shade);
   if (world.has_volumes) {

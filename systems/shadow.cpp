@@ -25,7 +25,10 @@ void start_ray(const World& world, const ShadowStream& shadow, uint32_t i, RTCRa
 
 void add_contribution(const ShadowStream& shadow, uint32_t i, Slots& slots) {
   const uint32_t slot = shadow.slot[i];
-  for (size_t j = 0; j < 4; ++j) slots.radiance[j][slot] += shadow.contribution[j][i];
+  const auto& light = shadow.contribution;
+  const float mean = 0.25f * ((light[0][i] + light[1][i]) + (light[2][i] + light[3][i]));
+  const float kept = mean > slots.limit ? slots.limit / mean : 1;
+  for (size_t j = 0; j < 4; ++j) slots.radiance[j][slot] += light[j][i] * kept;
 }
 
 // Calls done(ray, is_occluded) for every ray.

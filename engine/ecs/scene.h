@@ -70,6 +70,8 @@ struct RenderSettings {
   Integrator integrator = Integrator::path;
   float occlusion_distance = std::numeric_limits<float>::infinity();  // metres; ambient_occlusion: what lies beyond
                                                                       // does not count
+  // cd/m^2: the most that one contribution of light that was scattered more than once may add to a sample; biased.
+  float clamp_indirect = std::numeric_limits<float>::infinity();
   bool shadows = true;      // false: light sources shine through everything on what they light
   uint32_t band_count = 0;  // of the spectral film; 0: none
   Filter filter;

@@ -289,6 +289,8 @@ struct World {
   std::vector<Environment> environments;  // rays that leave the scene run into all of them
   TextureSet textures;
   SpectrumId ambient_light = zero_spectrum;  // radiance of what ambient_occlusion sees
+  float indirect_limit =
+      std::numeric_limits<float>::infinity();  // RenderSettings::clamp_indirect in units of Slots::radiance
   // By kind and row: what bends the shading normal. A program of TextureSet, or their number plus a row of normal_maps;
   // no_index: nothing. Columns end with the last that has one.
   std::array<Column<uint32_t>, shade_kind_count> bumps;

@@ -8,9 +8,10 @@ constexpr bool required = true;
 constexpr KeySpec scene[] = {{"$schema"},           {"metamer", required}, {"units"}, {"settings"}, {"spectra"},
                              {"textures"},          {"materials"},         {"media"}, {"meshes"},   {"curves"},
                              {"entities", required}};
-constexpr KeySpec settings[] = {{"size"},    {"samples"}, {"max_depth"},    {"seed"},         {"integrator"},
-                                {"shadows"}, {"filter"},  {"exposure"},     {"sensor_scale"}, {"spectral"},
-                                {"color"},   {"crop"},    {"pixel_jitter"}, {"shutter"},      {"occlusion_distance"}};
+constexpr KeySpec settings[] = {
+    {"size"},         {"samples"},  {"max_depth"},          {"seed"},          {"integrator"}, {"shadows"},
+    {"filter"},       {"exposure"}, {"sensor_scale"},       {"spectral"},      {"color"},      {"crop"},
+    {"pixel_jitter"}, {"shutter"},  {"occlusion_distance"}, {"clamp_indirect"}};
 constexpr KeySpec filter_box[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_triangle[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_gaussian[] = {{"type", required}, {"radius"}, {"sigma"}};

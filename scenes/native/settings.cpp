@@ -71,6 +71,7 @@ RenderSettings read_settings(const SceneContext& context, const Json::Value& val
       static_cast<Integrator>(object.choice("integrator", integrator_names, static_cast<size_t>(settings.integrator)));
   settings.occlusion_distance =
       context.metres(object.number("occlusion_distance", positive, std::numeric_limits<double>::infinity()));
+  settings.clamp_indirect = object.number_f("clamp_indirect", positive, settings.clamp_indirect);
   settings.shadows = object.boolean("shadows", settings.shadows);
   settings.seed = object.integer("seed", 0, 0xffffffffu, settings.seed);
   settings.exposure_stops = object.number_f("exposure", stops, settings.exposure_stops);

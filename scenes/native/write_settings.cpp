@@ -42,6 +42,8 @@ JsonText write_settings(const RenderSettings& settings) {
     object.add("shutter", JsonText::numbers(std::array{settings.shutter_open, settings.shutter_close}));
   if (settings.occlusion_distance != usual.occlusion_distance)
     object.add("occlusion_distance", JsonText::number(settings.occlusion_distance));
+  if (settings.clamp_indirect != usual.clamp_indirect)
+    object.add("clamp_indirect", JsonText::number(settings.clamp_indirect));
   if (settings.exposure_stops != usual.exposure_stops)
     object.add("exposure", JsonText::number(settings.exposure_stops));
   if (settings.sensor_scale != usual.sensor_scale) object.add("sensor_scale", JsonText::number(settings.sensor_scale));

@@ -63,7 +63,8 @@ constexpr const char* info_footer = R"(Examples:
 
 // Flags as text, the way they were written.
 struct RenderTexts {
-  std::string samples_per_pixel, size, threads, tile, seed, max_depth, spectral, exposure, integrator, color;
+  std::string samples_per_pixel, size, threads, tile, seed, max_depth, spectral, exposure, integrator, color,
+      clamp_indirect;
   bool no_shadows = false;
   LookTexts look;
 };
@@ -91,6 +92,9 @@ void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
   option("--integrator", texts.integrator, "NAME",
          "Which light is followed: local (straight from the light sources to rough surfaces), recursive (also by "
          "ideal reflection and refraction), path (all of it); or ambient_occlusion (how open surfaces are)");
+  option("--clamp-indirect", texts.clamp_indirect, "L",
+         "The most, in cd/m^2, that light scattered more than once may add to a sample at a time: no fireflies, but "
+         "biased");
   render->add_flag("--no-shadows", texts.no_shadows, "Light sources shine through everything");
   option("--spectral", texts.spectral, "[N]",
          "Record the mean radiance of N bands from 380 to 740 nm too, 36 if N is not given; 0: none");
@@ -212,6 +216,8 @@ SceneOverrides parse_overrides(const CLI::App& render, const RenderTexts& texts,
   if (given("--color"))
     if (const auto index = parse_name("--color", texts.color, color_mode_names(), mistakes))
       overrides.color = static_cast<ColorMode>(*index);
+  if (given("--clamp-indirect"))
+    overrides.clamp_indirect = parse_real("--clamp-indirect", texts.clamp_indirect, 1e-6f, 1e12f, mistakes);
   if (given("--exposure") && !is_automatic(texts.exposure))
     overrides.exposure_stops =
         parse_real("--exposure", texts.exposure, -largest_exposure, largest_exposure, mistakes, " or auto");

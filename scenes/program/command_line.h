@@ -18,7 +18,7 @@ namespace metamer {
 struct SceneOverrides {
   std::optional<uint32_t> width, height;  // pixels; both or neither
   std::optional<uint32_t> samples_per_pixel, max_depth, seed, band_count;
-  std::optional<float> exposure_stops;
+  std::optional<float> exposure_stops, clamp_indirect;
   std::optional<Integrator> integrator;
   bool no_shadows = false;  // false: what the scene says
   std::optional<ColorMode> color;

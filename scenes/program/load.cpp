@@ -34,6 +34,7 @@ void apply(const SceneOverrides& overrides, RenderSettings& settings) {
   settings.samples_per_pixel = overrides.samples_per_pixel.value_or(settings.samples_per_pixel);
   settings.max_depth = overrides.max_depth.value_or(settings.max_depth);
   settings.integrator = overrides.integrator.value_or(settings.integrator);
+  settings.clamp_indirect = overrides.clamp_indirect.value_or(settings.clamp_indirect);
   settings.shadows = settings.shadows && !overrides.no_shadows;
   settings.seed = overrides.seed.value_or(settings.seed);
   settings.band_count = overrides.band_count.value_or(settings.band_count);

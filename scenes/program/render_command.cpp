@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -48,6 +49,8 @@ WriteSettings write_settings(const RenderArguments& arguments, const Outputs& ou
                            {"filter", std::string(filter_name(settings.filter.kind))},
                            {"color", std::string(color_mode_name(settings.color))},
                            {exposure_setting, fmt::format("{}", settings.exposure_stops)}};
+  if (std::isfinite(settings.clamp_indirect))
+    write.header.settings.emplace_back("clamp_indirect", fmt::format("{}", settings.clamp_indirect));
   const TileRect rendered = rendered_pixels(settings);
   if (rendered.width() < settings.width || rendered.height() < settings.height)
     write.header.window = {rendered.x0, rendered.y0, settings.width, settings.height};

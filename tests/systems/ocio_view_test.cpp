@@ -8,6 +8,7 @@
 
 #include "systems/display_colour.h"
 #include "tests/scenes/support/files.h"
+#include "tests/systems/support/pictures.h"
 
 namespace metamer {
 namespace {
@@ -15,16 +16,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Optional;
-
-Picture picture_of(const std::vector<std::array<float, 3>>& colours) {
-  Picture picture{static_cast<uint32_t>(colours.size()), 1, {}, {}, {}};
-  for (const std::array<float, 3>& c : colours) {
-    picture.r.push_back(c[0]);
-    picture.g.push_back(c[1]);
-    picture.b.push_back(c[2]);
-  }
-  return picture;
-}
 
 // Computed in Python from the splines of the Academy's CTL (RRT and ODT of 48 cd/m^2, ACES 1.x; for a dim surround the
 // luminance to the power 0.9811), which do nothing else to greys.

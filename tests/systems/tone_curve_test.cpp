@@ -9,19 +9,10 @@
 
 #include "systems/tone_map.h"
 #include "tests/support/each_target.h"
+#include "tests/systems/support/pictures.h"
 
 namespace metamer {
 namespace {
-
-Picture picture_of(const std::vector<std::array<float, 3>>& colours) {
-  Picture picture{static_cast<uint32_t>(colours.size()), 1, {}, {}, {}};
-  for (const std::array<float, 3>& c : colours) {
-    picture.r.push_back(c[0]);
-    picture.g.push_back(c[1]);
-    picture.b.push_back(c[2]);
-  }
-  return picture;
-}
 
 std::array<float, 3> exposed(const std::array<float, 3>& rgb, ToneCurve curve, ColorSpace display = ColorSpace::srgb) {
   Picture picture = picture_of({rgb});
