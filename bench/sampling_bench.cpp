@@ -145,7 +145,7 @@ SamplingBatch make_batch() {
   batch.environment = make_distribution_2d(weights, 1024, 512);
   weights.resize(1000);
   batch.lights = make_distribution_1d(weights);
-  batch.gaussian = make_pixel_filter(FilterKind::gaussian, 1.5, 1.5, 0.5);
+  batch.gaussian = make_pixel_filter(FilterKind::gaussian, 1.5, 1.5);
   return batch;
 }
 

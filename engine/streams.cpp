@@ -6,68 +6,54 @@
 namespace metamer {
 namespace {
 
-template <size_t N>
-void take_all(BatchArena& arena, size_t rows, Columns<float, N>& columns) {
-  for (float*& column : columns) column = arena.take<float>(rows);
+template <class Visit>
+void for_each_column(HitStream& s, const Visit& visit) {
+  visit_columns(visit, s.object, s.primitive, s.distance, s.u, s.material, s.passed, s.reach, s.depth_left);
 }
 
-template <size_t N>
-void take_all(BatchArena& arena, size_t rows, Columns<uint32_t, N>& columns) {
-  for (uint32_t*& column : columns) column = arena.take<uint32_t>(rows);
+template <class Visit>
+void for_each_column(ShadeStream& s, const Visit& visit) {
+  visit_columns(visit, s.wo, s.position, s.normal, s.shading_normal, s.tangent, s.uv, s.dp_du, s.dp_dv, s.dn_du,
+                s.dn_dv, s.distance, s.offset, s.material, s.light, s.lambda_nm, s.throughput, s.pdf_direction,
+                s.eta_scale, s.pixel_seed, s.index, s.slot, s.media, s.time, s.reflectance, s.transmittance, s.alpha,
+                s.volumes, s.share);
+  visit_columns(visit, s.light_direction, s.light_radiance, s.light_distance, s.light_pdf);
+  visit_columns(visit, s.next_direction, s.next_weight, s.next_pdf, s.next_eta_scale, s.next_media);
 }
 
-void take_paths(BatchArena& arena, size_t rows, PathStream& s) {
-  for_each_column(s, [&](auto*& column) { column = arena.take<std::remove_reference_t<decltype(*column)>>(rows); });
+template <class Visit>
+void for_each_column(ShadowStream& s, const Visit& visit) {
+  visit_columns(visit, s.origin, s.direction, s.t_far, s.contribution, s.slot, s.lambda_nm, s.volume, s.time);
 }
 
-void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
-  for (auto* columns : {&s.wo, &s.position, &s.normal, &s.shading_normal, &s.tangent, &s.dp_du, &s.dp_dv, &s.dn_du,
-                        &s.dn_dv, &s.light_direction, &s.next_direction})
-    take_all(arena, rows, *columns);
-  for (auto* columns :
-       {&s.lambda_nm, &s.throughput, &s.reflectance, &s.transmittance, &s.light_radiance, &s.next_weight})
-    take_all(arena, rows, *columns);
-  take_all(arena, rows, s.uv);
-  take_all(arena, rows, s.alpha);
-  for (float** column : {&s.distance, &s.offset, &s.pdf_direction, &s.eta_scale, &s.light_distance, &s.light_pdf,
-                         &s.next_pdf, &s.next_eta_scale, &s.time})
-    *column = arena.take<float>(rows);
-  for (uint32_t** column : {&s.material, &s.light, &s.pixel_seed, &s.index, &s.slot})
-    *column = arena.take<uint32_t>(rows);
-  take_all(arena, rows, s.media);
-  take_all(arena, rows, s.next_media);
-  take_all(arena, rows, s.volumes);
-  take_all(arena, rows, s.share);
+template <class Visit>
+void for_each_column(Slots& s, const Visit& visit) {
+  visit_columns(visit, s.lambda_nm, s.inv_pdf_nm, s.radiance, s.pixel, s.sample, s.weight);
 }
 
-constexpr size_t columns_in_all =
-    2 * 27 + 8 + (11 * 3 + 6 * 4 + 4 + 9 + 5 + 4 + 2 + 4) + (6 + 1 + 4 + 2 + 4 + 1) + (12 + 2) + 1;
+template <class Visit>
+void for_each_column(Batch& batch, const Visit& visit) {
+  for_each_column(batch.paths, visit);
+  for_each_column(batch.next, visit);
+  for_each_column(batch.hits, visit);
+  for_each_column(batch.shade, visit);
+  for_each_column(batch.shadow, visit);
+  for_each_column(batch.slots, visit);
+  visit(batch.order);
+}
+
 constexpr size_t column_bytes = (sorted_capacity + column_lanes) * sizeof(float) + 2 * column_alignment;
 
 }  // namespace
 
 // The last vector of a stream may be read and written whole: every column has a vector of padding.
-Batch::Batch() : arena(columns_in_all * column_bytes) {
-  const size_t rows = sorted_capacity + column_lanes;
-  take_paths(arena, rows, paths);
-  take_paths(arena, rows, next);
-  hits = {arena.take<uint32_t>(rows), arena.take<uint32_t>(rows), arena.take<float>(rows), arena.take<float>(rows),
-          arena.take<uint32_t>(rows), arena.take<float>(rows),    arena.take<float>(rows), arena.take<float>(rows)};
-  take_shade(arena, rows, shade);
-  take_all(arena, rows, shadow.origin);
-  take_all(arena, rows, shadow.direction);
-  shadow.t_far = arena.take<float>(rows);
-  take_all(arena, rows, shadow.contribution);
-  shadow.slot = arena.take<uint32_t>(rows);
-  take_all(arena, rows, shadow.lambda_nm);
-  shadow.volume = arena.take<uint32_t>(rows);
-  shadow.time = arena.take<float>(rows);
-  take_all(arena, rows, slots.lambda_nm);
-  take_all(arena, rows, slots.inv_pdf_nm);
-  take_all(arena, rows, slots.radiance);
-  slots.pixel = arena.take<uint32_t>(rows);
-  slots.sample = arena.take<uint32_t>(rows);
-  order = arena.take<uint32_t>(rows);
+Batch::Batch() {
+  size_t columns = 0;
+  for_each_column(*this, [&](auto*&) { ++columns; });
+  arena.reserve(columns * column_bytes);
+  for_each_column(*this, [&](auto*& column) {
+    column = arena.take<std::remove_reference_t<decltype(*column)>>(sorted_capacity + column_lanes);
+  });
 }
 
 void copy_columns(PathStream& from, uint32_t first, uint32_t count, PathStream& to) {

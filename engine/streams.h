@@ -3,7 +3,7 @@
 // until the batch is accumulated.
 //
 // Per path: PathStream 112 bytes, twice (this bounce's and the next one's rays); HitStream 32; ShadeStream 340;
-// ShadowStream 72; Slots 56. Columns that a scene has no use for are not touched.
+// ShadowStream 72; Slots 60. Columns that a scene has no use for are not touched.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -61,7 +61,7 @@ using Groups = std::array<Group, shade_kind_count>;
 // apart, so that the same row of many columns does not fall into one cache set.
 class BatchArena {
  public:
-  explicit BatchArena(size_t bytes) : memory_(bytes) {}
+  void reserve(size_t bytes) { memory_.resize(bytes); }
   template <class T>
   T* take(size_t rows) {
     T* column = reinterpret_cast<T*>(memory_.data() + used_);
@@ -77,6 +77,21 @@ class BatchArena {
 
 template <class T, size_t N>
 using Columns = std::array<T*, N>;
+
+// Calls `visit` with every column of a list of columns and groups of columns.
+template <class Visit, class T>
+void visit_columns(const Visit& visit, T*& column) {
+  visit(column);
+}
+template <class Visit, class T, size_t N>
+void visit_columns(const Visit& visit, Columns<T, N>& columns) {
+  for (T*& column : columns) visit(column);
+}
+template <class Visit, class First, class... Rest>
+void visit_columns(const Visit& visit, First& first, Rest&... rest) {
+  visit_columns(visit, first);
+  visit_columns(visit, rest...);
+}
 
 // Rows a sorted stream may need: every group may end in a partly filled vector.
 inline constexpr uint32_t sorted_capacity = batch_capacity + shade_kind_count * column_lanes;
@@ -104,25 +119,15 @@ struct PathStream {
 
 template <class Visit>
 void for_each_column(PathStream& s, const Visit& visit) {
-  for (auto* columns : {&s.origin, &s.direction})
-    for (float*& column : *columns) visit(column);
-  for (auto* columns : {&s.lambda_nm, &s.throughput})
-    for (float*& column : *columns) visit(column);
-  visit(s.pdf_direction);
-  visit(s.eta_scale);
-  visit(s.pixel_seed);
-  visit(s.index);
-  visit(s.slot);
-  visit(s.time);
-  for (uint32_t*& column : s.media) visit(column);
-  visit(s.volume);
-  for (float*& column : s.share) visit(column);
+  visit_columns(visit, s.origin, s.direction, s.lambda_nm, s.throughput, s.pdf_direction, s.eta_scale, s.pixel_seed,
+                s.index, s.slot, s.time, s.media, s.volume, s.share);
 }
 
 // Rows [first, first + count) of one stream to the front of another.
 void copy_columns(PathStream& from, uint32_t first, uint32_t count, PathStream& to);
 
-// Writer: intersect; `volumes` for what happens on the way.
+// A column more of this and the streams below needs a place in for_each_column (streams.cpp). Writer: intersect;
+// `volumes` for what happens on the way.
 struct HitStream {
   uint32_t* object;     // row of World::objects; no_index: the ray left the scene
   uint32_t* primitive;  // triangle or segment within the object
@@ -198,6 +203,7 @@ struct Slots {
   Columns<float, 4> lambda_nm, inv_pdf_nm;
   Columns<float, 4> radiance;  // W m^-2 sr^-1 nm^-1, each wavelength on its own; in RGB mode a channel's, cd/m^2
   uint32_t *pixel, *sample;    // pixel of the tile (row-major), or dead_lane outside the picture; sample index
+  float* weight;               // of the pixel filter: what of the radiance counts; below 0 in negative lobes
   float limit = std::numeric_limits<float>::infinity();  // of the mean radiance of what is being added; pipeline
 };
 
@@ -211,6 +217,7 @@ struct NodeStack {
   PathStream rays;  // `size` nodes; slot unused
   Columns<float, 4> inv_pdf_nm;
   uint32_t *pixel, *sample;
+  float* weight;
   std::vector<Level> levels;
   uint32_t capacity = 0;
   Column<std::byte> memory;
@@ -221,13 +228,11 @@ struct NodeStack {
 template <class Visit>
 void for_each_column(NodeStack& s, const Visit& visit) {
   for_each_column(s.rays, visit);
-  for (float*& column : s.inv_pdf_nm) visit(column);
-  visit(s.pixel);
-  visit(s.sample);
+  visit_columns(visit, s.inv_pdf_nm, s.pixel, s.sample, s.weight);
 }
 
 struct Batch {
-  explicit Batch();
+  Batch();
   size_t bytes() const { return arena.bytes() + nodes.memory.bytes() + (crossings ? crossings->bytes() : 0); }
   BatchArena arena;
   PathStream paths, next;

@@ -12,8 +12,32 @@ HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
 namespace {
 
+// XYZ of samples into their columns: bright ones scaled down, balanced, and weighed by the pixel filter.
+// `scale`: what of the radiance was recorded, but for the balance.
+HWY_INLINE void record(const World& world, const Slots& slots, size_t i, VF value[3], const Columns<float, 3>& xyz,
+                       float* scale) {
+  const float most = world.settings.largest_component;
+  VF kept = splat(1.0f);
+  if (most < std::numeric_limits<float>::infinity()) {
+    const VF largest = hn::Max(value[0], hn::Max(value[1], value[2]));
+    kept = hn::IfThenElse(hn::Gt(largest, splat(most)), hn::Div(splat(most), largest), kept);
+  }
+  kept = hn::Mul(kept, load(slots.weight, i));
+  store(kept, scale, i);
+  for (size_t c = 0; c < 3; ++c) value[c] = hn::Mul(value[c], kept);
+  const auto& m = world.sensor_matrix;
+  for (size_t c = 0; c < 3; ++c) {
+    VF recorded = value[c];
+    if (world.settings.white_balance_kelvin > 0) {
+      recorded = hn::Mul(splat(m[3 * c]), value[0]);
+      for (size_t k = 1; k < 3; ++k) recorded = hn::MulAdd(splat(m[3 * c + k]), value[k], recorded);
+    }
+    store(recorded, xyz[c], i);
+  }
+}
+
 // X = 683 integral of L xbar d(lambda), estimated by the mean over a path's wavelengths of L xbar / p.
-void to_xyz(const World& world, const Slots& slots, const Columns<float, 3>& xyz) {
+void to_xyz(const World& world, const Slots& slots, const Columns<float, 3>& xyz, float* row_scale) {
   const float* observer = observer_table(Observer::cie1931).columns.data();
   const VF scale = splat(static_cast<float>(luminous_efficacy / wavelengths_per_path) * world.settings.sensor_scale);
   for (size_t i = 0; i < slots.size; i += lane_count()) {
@@ -24,12 +48,13 @@ void to_xyz(const World& world, const Slots& slots, const Columns<float, 3>& xyz
       const VF weight = hn::Mul(load(slots.radiance[j], i), load(slots.inv_pdf_nm[j], i));
       for (size_t c = 0; c < 3; ++c) sum[c] = hn::MulAdd(weight, matching[c], sum[c]);
     }
-    for (size_t c = 0; c < 3; ++c) store(hn::Mul(sum[c], scale), xyz[c], i);
+    for (VF& value : sum) value = hn::Mul(value, scale);
+    record(world, slots, i, sum, xyz, row_scale);
   }
 }
 
 // RGB mode: the three channels, each on its wavelength's primary.
-void channels_to_xyz(const World& world, const Slots& slots, const Columns<float, 3>& xyz) {
+void channels_to_xyz(const World& world, const Slots& slots, const Columns<float, 3>& xyz, float* row_scale) {
   const Matrix3& matrix = coefficient_space(world.settings.color).to_xyz;
   const auto primary = [&](size_t c, size_t channel) {
     return splat(static_cast<float>(matrix[c][channel]) * world.settings.sensor_scale);
@@ -45,7 +70,7 @@ void channels_to_xyz(const World& world, const Slots& slots, const Columns<float
         sum[c] = hn::MulAdd(radiance, hn::IfThenElse(is_red, primary(c, 0), other), sum[c]);
       }
     }
-    for (size_t c = 0; c < 3; ++c) store(sum[c], xyz[c], i);
+    record(world, slots, i, sum, xyz, row_scale);
   }
 }
 
@@ -60,11 +85,11 @@ HWY_EXPORT(to_xyz);
 HWY_EXPORT(channels_to_xyz);
 
 void accumulate(const World& world, const Slots& slots, TileFilm& film, SampleWeights weights) {
-  alignas(column_alignment) float X[batch_capacity], Y[batch_capacity], Z[batch_capacity];
+  alignas(column_alignment) float X[batch_capacity], Y[batch_capacity], Z[batch_capacity], scale[batch_capacity];
   if (world.settings.color == ColorMode::spectral)
-    HWY_DYNAMIC_DISPATCH(to_xyz)(world, slots, {X, Y, Z});
+    HWY_DYNAMIC_DISPATCH(to_xyz)(world, slots, {X, Y, Z}, scale);
   else
-    HWY_DYNAMIC_DISPATCH(channels_to_xyz)(world, slots, {X, Y, Z});
+    HWY_DYNAMIC_DISPATCH(channels_to_xyz)(world, slots, {X, Y, Z}, scale);
   const std::span<const uint32_t> pixel(slots.pixel, slots.size);
   uint8_t live[batch_capacity], recorded[batch_capacity];
   for (uint32_t i = 0; i < slots.size; ++i) {
@@ -74,8 +99,12 @@ void accumulate(const World& world, const Slots& slots, TileFilm& film, SampleWe
   add_samples(film, pixel, {slots.sample, slots.size}, X, Y, Z, {live, slots.size});
   if (film.band_count() == 0) return;
   const auto columns = [](const Columns<float, 4>& c) { return std::array<const float*, 4>{c[0], c[1], c[2], c[3]}; };
-  const BandSamples bands{columns(slots.lambda_nm), columns(slots.inv_pdf_nm), columns(slots.radiance),
-                          world.settings.sensor_scale, weights == SampleWeights::added};
+  const BandSamples bands{columns(slots.lambda_nm),
+                          columns(slots.inv_pdf_nm),
+                          columns(slots.radiance),
+                          world.settings.sensor_scale,
+                          scale,
+                          weights == SampleWeights::added};
   add_band_samples(film, pixel, bands, {live, slots.size}, {recorded, slots.size});
 }
 

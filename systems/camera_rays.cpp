@@ -135,6 +135,7 @@ void camera_rays_kernel(const World& world, std::span<const RayPacket> packets, 
       sample_2d(key, splat_u(film_dimension), &u, &v);
       const VF no_offset = hn::Zero(FloatTag());
       const Point2V offset = jitter ? sample_filter(world.filter, u, v) : Point2V{no_offset, no_offset};
+      store(jitter ? filter_weight(world.filter, u, v) : splat(1.0f), slots.weight, i);
       const VF film_x = hn::Add(hn::Add(hn::ConvertTo(FloatTag(), as_index(x)), splat(0.5f)), offset.x);
       const VF film_y = hn::Add(hn::Add(hn::ConvertTo(FloatTag(), as_index(y)), splat(0.5f)), offset.y);
       VF lens_u = hn::Zero(FloatTag()), lens_v = lens_u;

@@ -2,8 +2,20 @@
 
 #include <fmt/format.h>
 
+#include "systems/display_colour.h"
+
 namespace metamer {
 namespace {
+
+// What the light of that temperature looks like becomes the white of the picture's colour space, by Bradford's
+// adaptation, as in pbrt-v4.
+std::array<float, 9> white_balance(const RenderSettings& settings) {
+  const Matrix3 matrix = adaptation_matrix(Adaptation::bradford, white_of_temperature(settings.white_balance_kelvin),
+                                           white_xyz(settings.primaries));
+  std::array<float, 9> rounded;
+  for (size_t i = 0; i < 9; ++i) rounded[i] = static_cast<float>(matrix[i / 3][i % 3]);
+  return rounded;
+}
 
 // `disposable` is the scene if it is not needed any more, else null.
 std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics& diagnostics) {
@@ -16,7 +28,9 @@ std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics&
                                   "'spectral' goes with color 'spectral' only",
                                   color_mode_name(scene.settings.color), scene.settings.band_count));
   const Filter& filter = scene.settings.filter;
-  world->filter = make_pixel_filter(filter.kind, filter.radius_x, filter.radius_y, filter.sigma);
+  world->filter =
+      make_pixel_filter(filter.kind, filter.radius_x, filter.radius_y, {filter.sigma, filter.b, filter.c, filter.tau});
+  if (scene.settings.white_balance_kelvin > 0) world->sensor_matrix = white_balance(scene.settings);
   const std::vector<glm::dmat4> to_world = build_transforms(scene, diagnostics);
   build_textures(scene, *world, diagnostics);
   const std::vector<MaterialRow> materials = build_materials(scene, *world, diagnostics);

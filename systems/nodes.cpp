@@ -40,6 +40,7 @@ void push_lanes(const ShadeStream& shade, const Slots& slots, Branch branch, siz
   append(kept, seed, nodes.rays.pixel_seed, at);
   append(kept, pixel, nodes.pixel, at);
   append(kept, gather(slots.sample, row), nodes.sample, at);
+  append(kept, gather(slots.weight, row), nodes.weight, at);
 }
 
 void push_nodes_kernel(const ShadeStream& shade, const Slots& slots, ShadeKind kind, Branch branch, NodeStack& nodes) {
@@ -85,6 +86,7 @@ bool pop_nodes(uint32_t most, NodeStack& nodes, uint32_t* depth, PathStream& pat
   copy_all(slots.inv_pdf_nm, nodes.inv_pdf_nm);
   copy(slots.pixel, nodes.pixel);
   copy(slots.sample, nodes.sample);
+  copy(slots.weight, nodes.weight);
   for (float* column : slots.radiance) std::fill(column, column + count, 0.0f);
   for (uint32_t i = 0; i < count; ++i) paths.slot[i] = i;
   paths.size = slots.size = count;

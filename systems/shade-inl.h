@@ -9,6 +9,7 @@
 
 #include "engine/sampling/points-inl.h"
 #include "engine/spectrum/spectrum-inl.h"
+#include "systems/bsdf/fresnel-inl.h"
 #include "systems/bsdf/limits.h"
 #include "systems/bsdf/local-inl.h"
 #include "systems/dimensions.h"
@@ -110,6 +111,14 @@ HWY_INLINE void store_next(const Frame& frame, const Vec3& wi, const VF weight[4
   store(pdf, shade.next_pdf, i);
 }
 
+// The next direction of a smooth surface, a delta lobe, in world space.
+HWY_INLINE void store_delta(const Vec3& direction, const VF weight[4], ShadeStream& shade, size_t i) {
+  store(direction, shade.next_direction, i);
+  store(weight, shade.next_weight, i);
+  store(hn::Zero(FloatTag()), shade.next_pdf, i);
+  store(splat(1.0f), shade.next_eta_scale, i);
+}
+
 HWY_INLINE const Group& group_of(const ShadeStream& shade, ShadeKind kind) {
   return shade.groups[static_cast<size_t>(kind)];
 }
@@ -203,6 +212,53 @@ HWY_INLINE VF lane_alpha(const World& world, const Column<float>& alphas, const 
   if (!world.has_textured_alpha) return alpha;
   const MF textured = float_mask(hn::Ne(gather(programs.data(), row), splat_u(no_index)));
   return hn::IfThenElse(textured, hn::Max(load(textured_alpha, i), splat(least_alpha)), alpha);
+}
+
+// What a lobe is drawn with, all in [0, 1): `choice` for which of its parts, u and v for the direction.
+struct Draw {
+  VF choice, u, v;
+};
+HWY_INLINE Draw draw_of(uint32_t depth, const ShadeStream& shade, size_t i) {
+  const PointKey key = point_key(shade, i);
+  Draw draw;
+  draw.choice = sample_1d(key, splat_u(bounce_dimension(depth, lobe_dimension)));
+  sample_2d(key, splat_u(bounce_dimension(depth, direction_dimension)), &draw.u, &draw.v);
+  return draw;
+}
+
+// The loop of the kinds that spread light over directions around the shading normal and let none through to where it
+// is refracted. `make_lobe(i, wo)` is the BSDF of lanes i ... seen from `wo` in the shading frame. It has
+//   void eval(const Vec3& wi, VF f_cos[4], VF& pdf)   its answer to light from wi, and how likely it draws wi
+//   BsdfSample sample(const Draw&)                    pdf 0: a delta lobe
+template <typename MakeLobe>
+HWY_INLINE void shade_spreading(const World& world, ShadeKind kind, const ShadeWork& work, ShadeStream& shade,
+                                ShadowStream& shadow, const MakeLobe& make_lobe) {
+  const Group& group = group_of(shade, kind);
+  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
+    const Frame frame = shading_frame(world, shade, i);
+    const auto lobe = make_lobe(i, to_local(frame, load(shade.wo, i)));
+    if (work.weigh_light) {
+      VF f_cos[4], pdf;
+      lobe.eval(to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
+      append_shadow_rays(shade, i, f_cos, pdf, shadow);
+    }
+    if (!work.draw_next) continue;
+    const BsdfSample next = lobe.sample(draw_of(work.depth, shade, i));
+    store_next(frame, next.wi, next.weight, next.pdf, shade, i);
+    store(splat(1.0f), shade.next_eta_scale, i);
+  }
+}
+
+// The loop of smooth surfaces' mirror images. `reflect_at(i, cos_theta, weight)` fills what of the light is mirrored.
+template <typename ReflectAt>
+HWY_INLINE void shade_mirror(ShadeKind kind, ShadeStream& shade, const ReflectAt& reflect_at) {
+  const Group& group = group_of(shade, kind);
+  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
+    const Vec3 wo = load(shade.wo, i), normal = load(shade.shading_normal, i);
+    VF weight[4];
+    reflect_at(i, hn::Abs(dot(wo, normal)), weight);
+    store_delta(reflect(-wo, normal), weight, shade, i);
+  }
 }
 
 }  // namespace metamer::HWY_NAMESPACE

@@ -27,76 +27,60 @@ HWY_INLINE CoatOptics coat_optics(const World& world, const CoatedColumns& table
   return optics;
 }
 
-struct Draw {
-  VF choice, u, v;
+struct SmoothCoatLobe {
+  Vec3 wo;
+  CoatOptics optics;
+  CoatView view;
+  HWY_INLINE void eval(const Vec3& wi, VF f_cos[4], VF& pdf) const {
+    eval_smooth_coat(wo, view, optics, wi, f_cos, pdf);
+  }
+  // Lights that the mirror shows cannot be sampled.
+  HWY_INLINE BsdfSample sample(const Draw& draw) const {
+    CoatSample next = sample_smooth_coat(wo, view, optics, draw.choice, draw.u, draw.v);
+    next.draw.pdf = hn::IfThenZeroElse(next.mirrored, next.draw.pdf);
+    return next.draw;
+  }
 };
-HWY_INLINE Draw draw_of(uint32_t depth, const ShadeStream& shade, size_t i) {
-  const PointKey key = point_key(shade, i);
-  Draw draw;
-  draw.choice = sample_1d(key, splat_u(bounce_dimension(depth, lobe_dimension)));
-  sample_2d(key, splat_u(bounce_dimension(depth, direction_dimension)), &draw.u, &draw.v);
-  return draw;
-}
 
 void shade_smooth_coated_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
-  const VF zero = hn::Zero(FloatTag());
-  const Group& group = group_of(shade, ShadeKind::smooth_coated);
-  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
-    const CoatOptics optics = coat_optics(world, world.smooth_coated, shade, i, material_row(shade, i));
-    const Frame frame = shading_frame(world, shade, i);
-    const Vec3 wo = to_local(frame, load(shade.wo, i));
-    CoatView view = make_smooth_coat_view(wo, optics);
-    if (!work.draw_mirror) view.surface_share = zero;
-    VF f_cos[4], pdf;
-    if (work.weigh_light) {
-      eval_smooth_coat(wo, view, optics, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
-      append_shadow_rays(shade, i, f_cos, pdf, shadow);
-    }
-    if (!work.draw_next) continue;
-    const Draw draw = draw_of(work.depth, shade, i);
-    const CoatSample next = sample_smooth_coat(wo, view, optics, draw.choice, draw.u, draw.v);
-    // Lights that the mirror shows cannot be sampled.
-    const VF next_pdf = hn::IfThenZeroElse(next.mirrored, next.draw.pdf);
-    store_next(frame, next.draw.wi, next.draw.weight, next_pdf, shade, i);
-    store(splat(1.0f), shade.next_eta_scale, i);
-  }
+  shade_spreading(world, ShadeKind::smooth_coated, work, shade, shadow, [&](size_t i, const Vec3& wo) HWY_ATTR {
+    SmoothCoatLobe lobe;
+    lobe.wo = wo;
+    lobe.optics = coat_optics(world, world.smooth_coated, shade, i, material_row(shade, i));
+    lobe.view = make_smooth_coat_view(wo, lobe.optics);
+    if (!work.draw_mirror) lobe.view.surface_share = hn::Zero(FloatTag());
+    return lobe;
+  });
 }
 
 void shade_coat_mirror_kernel(const World& world, ShadeStream& shade) {
-  const Group& group = group_of(shade, ShadeKind::smooth_coated);
-  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
-    const CoatOptics optics = coat_optics(world, world.smooth_coated, shade, i, material_row(shade, i));
-    const Vec3 wo = load(shade.wo, i), normal = load(shade.shading_normal, i);
-    VF weight[4];
-    coat_reflectance(optics, hn::Abs(dot(wo, normal)), weight);
-    store(reflect(-wo, normal), shade.next_direction, i);
-    store(weight, shade.next_weight, i);
-    store(hn::Zero(FloatTag()), shade.next_pdf, i);
-    store(splat(1.0f), shade.next_eta_scale, i);
-  }
+  shade_mirror(ShadeKind::smooth_coated, shade, [&](size_t i, VF cos_theta, VF weight[4]) HWY_ATTR {
+    coat_reflectance(coat_optics(world, world.smooth_coated, shade, i, material_row(shade, i)), cos_theta, weight);
+  });
 }
 
-void shade_rough_coated_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
-  const Group& group = group_of(shade, ShadeKind::rough_coated);
-  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
-    const VI row = material_row(shade, i);
-    const CoatOptics optics = coat_optics(world, world.rough_coated, shade, i, row);
-    const VF alpha_x = gather(world.rough_coated.alpha_x.data(), row);
-    const VF alpha_y = gather(world.rough_coated.alpha_y.data(), row);
-    const Frame frame = shading_frame(world, shade, i);
-    const GgxLobe lobe = make_ggx_lobe(to_local(frame, load(shade.wo, i)), alpha_x, alpha_y);
-    const CoatView view = make_rough_coat_view(lobe, optics);
-    VF f_cos[4], pdf;
-    if (work.weigh_light) {
-      eval_rough_coat(lobe, view, optics, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
-      append_shadow_rays(shade, i, f_cos, pdf, shadow);
-    }
-    if (!work.draw_next) continue;
-    const Draw draw = draw_of(work.depth, shade, i);
-    const BsdfSample next = sample_rough_coat(lobe, view, optics, draw.choice, draw.u, draw.v);
-    store_next(frame, next.wi, next.weight, next.pdf, shade, i);
-    store(splat(1.0f), shade.next_eta_scale, i);
+struct RoughCoatLobe {
+  CoatOptics optics;
+  GgxLobe surface;
+  CoatView view;
+  HWY_INLINE void eval(const Vec3& wi, VF f_cos[4], VF& pdf) const {
+    eval_rough_coat(surface, view, optics, wi, f_cos, pdf);
   }
+  HWY_INLINE BsdfSample sample(const Draw& draw) const {
+    return sample_rough_coat(surface, view, optics, draw.choice, draw.u, draw.v);
+  }
+};
+
+void shade_rough_coated_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
+  const auto& table = world.rough_coated;
+  shade_spreading(world, ShadeKind::rough_coated, work, shade, shadow, [&](size_t i, const Vec3& wo) HWY_ATTR {
+    const VI row = material_row(shade, i);
+    RoughCoatLobe lobe;
+    lobe.optics = coat_optics(world, table, shade, i, row);
+    lobe.surface = make_ggx_lobe(wo, gather(table.alpha_x.data(), row), gather(table.alpha_y.data(), row));
+    lobe.view = make_rough_coat_view(lobe.surface, lobe.optics);
+    return lobe;
+  });
 }
 
 }  // namespace

@@ -40,42 +40,29 @@ HWY_INLINE ConductorOptics conductor_optics(const World& world, const ShadeStrea
   return optics;
 }
 
+struct MetalLobe {
+  ConductorOptics optics;
+  GgxLobe lobe;
+  HWY_INLINE void eval(const Vec3& wi, VF f_cos[4], VF& pdf) const { eval_conductor(lobe, optics, wi, f_cos, pdf); }
+  HWY_INLINE BsdfSample sample(const Draw& draw) const { return sample_conductor(lobe, optics, draw.u, draw.v); }
+};
+
 void shade_rough_conductor_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
-  const Group& group = group_of(shade, ShadeKind::rough_conductor);
-  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
+  const ConductorColumns& table = world.conductor;
+  shade_spreading(world, ShadeKind::rough_conductor, work, shade, shadow, [&](size_t i, const Vec3& wo) HWY_ATTR {
     const VI row = material_row(shade, i);
-    const ConductorOptics optics = conductor_optics(world, shade, i, row);
-    const Frame frame = shading_frame(world, shade, i);
-    const Vec3 wo = to_local(frame, load(shade.wo, i));
-    const GgxLobe lobe = make_ggx_lobe(
-        wo, lane_alpha(world, world.conductor.alpha_x, world.conductor.alpha_texture[0], row, shade.alpha[0], i),
-        lane_alpha(world, world.conductor.alpha_y, world.conductor.alpha_texture[1], row, shade.alpha[1], i));
-    VF f_cos[4], pdf, u, v;
-    if (work.weigh_light) {
-      eval_conductor(lobe, optics, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
-      append_shadow_rays(shade, i, f_cos, pdf, shadow);
-    }
-    if (!work.draw_next) continue;
-    sample_2d(point_key(shade, i), splat_u(bounce_dimension(work.depth, direction_dimension)), &u, &v);
-    const BsdfSample next = sample_conductor(lobe, optics, u, v);
-    store_next(frame, next.wi, next.weight, next.pdf, shade, i);
-    store(splat(1.0f), shade.next_eta_scale, i);
-  }
+    MetalLobe metal;
+    metal.optics = conductor_optics(world, shade, i, row);
+    metal.lobe = make_ggx_lobe(wo, lane_alpha(world, table.alpha_x, table.alpha_texture[0], row, shade.alpha[0], i),
+                               lane_alpha(world, table.alpha_y, table.alpha_texture[1], row, shade.alpha[1], i));
+    return metal;
+  });
 }
 
 void shade_smooth_conductor_kernel(const World& world, ShadeStream& shade) {
-  const Group& group = group_of(shade, ShadeKind::smooth_conductor);
-  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
-    const ConductorOptics optics = conductor_optics(world, shade, i, material_row(shade, i));
-    const Vec3 wo = load(shade.wo, i), normal = load(shade.shading_normal, i);
-    const VF cos_theta = dot(wo, normal);
-    VF weight[4];
-    conductor_reflectance(optics, hn::Abs(cos_theta), weight);
-    store(reflect(-wo, normal), shade.next_direction, i);
-    store(weight, shade.next_weight, i);
-    store(hn::Zero(FloatTag()), shade.next_pdf, i);
-    store(splat(1.0f), shade.next_eta_scale, i);
-  }
+  shade_mirror(ShadeKind::smooth_conductor, shade, [&](size_t i, VF cos_theta, VF weight[4]) HWY_ATTR {
+    conductor_reflectance(conductor_optics(world, shade, i, material_row(shade, i)), cos_theta, weight);
+  });
 }
 
 }  // namespace

@@ -9,24 +9,21 @@ HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
 namespace {
 
+struct DiffuseLobe {
+  Vec3 wo;
+  VF albedo[4];
+  HWY_INLINE void eval(const Vec3& wi, VF f_cos[4], VF& pdf) const { eval_diffuse(wo, albedo, wi, f_cos, pdf); }
+  HWY_INLINE BsdfSample sample(const Draw& draw) const { return sample_diffuse(wo, albedo, draw.u, draw.v); }
+};
+
 void shade_diffuse_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
-  const Group& group = group_of(shade, ShadeKind::diffuse);
-  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
-    VF albedo[4], f_cos[4], pdf, u, v;
-    const VI row = material_row(shade, i);
-    lane_reflectance(world, world.diffuse.reflectance, world.diffuse.texture, row, shade, i, albedo);
-    const Frame frame = shading_frame(world, shade, i);
-    const Vec3 wo = to_local(frame, load(shade.wo, i));
-    if (work.weigh_light) {
-      eval_diffuse(wo, albedo, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
-      append_shadow_rays(shade, i, f_cos, pdf, shadow);
-    }
-    if (!work.draw_next) continue;
-    sample_2d(point_key(shade, i), splat_u(bounce_dimension(work.depth, direction_dimension)), &u, &v);
-    const BsdfSample next = sample_diffuse(wo, albedo, u, v);
-    store_next(frame, next.wi, next.weight, next.pdf, shade, i);
-    store(splat(1.0f), shade.next_eta_scale, i);
-  }
+  shade_spreading(world, ShadeKind::diffuse, work, shade, shadow, [&](size_t i, const Vec3& wo) HWY_ATTR {
+    DiffuseLobe lobe;
+    lobe.wo = wo;
+    lane_reflectance(world, world.diffuse.reflectance, world.diffuse.texture, material_row(shade, i), shade, i,
+                     lobe.albedo);
+    return lobe;
+  });
 }
 
 }  // namespace

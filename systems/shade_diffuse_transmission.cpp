@@ -21,26 +21,18 @@ HWY_INLINE SheetOptics sheet_optics(const World& world, const ShadeStream& shade
   return optics;
 }
 
+struct SheetLobe {
+  Vec3 wo;
+  SheetOptics optics;
+  HWY_INLINE void eval(const Vec3& wi, VF f_cos[4], VF& pdf) const { eval_sheet(wo, optics, wi, f_cos, pdf); }
+  HWY_INLINE BsdfSample sample(const Draw& draw) const { return sample_sheet(wo, optics, draw.choice, draw.u, draw.v); }
+};
+
 void shade_diffuse_transmission_kernel(const World& world, const ShadeWork& work, ShadeStream& shade,
                                        ShadowStream& shadow) {
-  const Group& group = group_of(shade, ShadeKind::diffuse_transmission);
-  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
-    const SheetOptics optics = sheet_optics(world, shade, i);
-    const Frame frame = shading_frame(world, shade, i);
-    const Vec3 wo = to_local(frame, load(shade.wo, i));
-    VF f_cos[4], pdf, u, v;
-    if (work.weigh_light) {
-      eval_sheet(wo, optics, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
-      append_shadow_rays(shade, i, f_cos, pdf, shadow);
-    }
-    if (!work.draw_next) continue;
-    const PointKey key = point_key(shade, i);
-    const VF choice = sample_1d(key, splat_u(bounce_dimension(work.depth, lobe_dimension)));
-    sample_2d(key, splat_u(bounce_dimension(work.depth, direction_dimension)), &u, &v);
-    const BsdfSample next = sample_sheet(wo, optics, choice, u, v);
-    store_next(frame, next.wi, next.weight, next.pdf, shade, i);
-    store(splat(1.0f), shade.next_eta_scale, i);
-  }
+  shade_spreading(world, ShadeKind::diffuse_transmission, work, shade, shadow, [&](size_t i, const Vec3& wo) HWY_ATTR {
+    return SheetLobe{wo, sheet_optics(world, shade, i)};
+  });
 }
 
 }  // namespace

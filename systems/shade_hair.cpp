@@ -28,26 +28,22 @@ HWY_INLINE HairOptics hair_optics(const World& world, const ShadeStream& shade, 
   return o;
 }
 
-void shade_hair_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
-  const Group& group = group_of(shade, ShadeKind::hair);
-  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
-    const HairOptics optics = hair_optics(world, shade, i);
-    const Frame frame = shading_frame(world, shade, i);
-    const HairView view = make_hair_view(to_local(frame, load(shade.wo, i)), optics);
-    if (work.weigh_light) {
-      VF f_cos[4], pdf;
-      eval_hair(view, optics, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
-      append_shadow_rays(shade, i, f_cos, pdf, shadow);
-    }
-    if (!work.draw_next) continue;
-    const PointKey key = point_key(shade, i);
-    const VF choice = sample_1d(key, splat_u(bounce_dimension(work.depth, lobe_dimension)));
-    VF u, v;
-    sample_2d(key, splat_u(bounce_dimension(work.depth, direction_dimension)), &u, &v);
-    const BsdfSample next = sample_hair(view, optics, choice, u, v);
-    store_next(frame, next.wi, next.weight, next.pdf, shade, i);
-    store(splat(1.0f), shade.next_eta_scale, i);
+struct HairLobe {
+  HairOptics optics;
+  HairView view;
+  HWY_INLINE void eval(const Vec3& wi, VF f_cos[4], VF& pdf) const { eval_hair(view, optics, wi, f_cos, pdf); }
+  HWY_INLINE BsdfSample sample(const Draw& draw) const {
+    return sample_hair(view, optics, draw.choice, draw.u, draw.v);
   }
+};
+
+void shade_hair_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
+  shade_spreading(world, ShadeKind::hair, work, shade, shadow, [&](size_t i, const Vec3& wo) HWY_ATTR {
+    HairLobe lobe;
+    lobe.optics = hair_optics(world, shade, i);
+    lobe.view = make_hair_view(wo, lobe.optics);
+    return lobe;
+  });
 }
 
 }  // namespace

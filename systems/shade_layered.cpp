@@ -53,48 +53,33 @@ HWY_INLINE VU walk_seed(const ShadeStream& shade, size_t i, uint32_t depth, uint
   return hash_combine(path, splat_u(2 * bounce_dimension(depth, lobe_dimension) + purpose));
 }
 
-// The functions are called once per vector and not made part of the loop: they are long.
-HWY_NOINLINE void weigh_light(const LayeredView& view, const LayeredOptics& optics, const Frame& frame, uint32_t depth,
-                              const ShadeStream& shade, size_t i, ShadowStream& shadow) {
-  VF f_cos[4], pdf;
-  eval_layered(view, optics, to_local(frame, load(shade.light_direction, i)), walk_seed(shade, i, depth, 0), f_cos,
-               pdf);
-  append_shadow_rays(shade, i, f_cos, pdf, shadow);
-}
-HWY_NOINLINE void draw_next(const LayeredView& view, const LayeredOptics& optics, const Frame& frame, uint32_t depth,
-                            ShadeStream& shade, size_t i) {
-  const PointKey key = point_key(shade, i);
-  const VF choice = sample_1d(key, splat_u(bounce_dimension(depth, lobe_dimension)));
-  VF u, v;
-  sample_2d(key, splat_u(bounce_dimension(depth, direction_dimension)), &u, &v);
-  const BsdfSample next = sample_layered(view, optics, choice, u, v, walk_seed(shade, i, depth, 1));
-  store_next(frame, next.wi, next.weight, next.pdf, shade, i);
-  store(splat(1.0f), shade.next_eta_scale, i);
-}
+// Its functions are called once per vector and not made part of the loop: they are long.
+struct LayeredLobe {
+  LayeredOptics optics;
+  LayeredView view;
+  VU seeds[2];  // of walks to the light, and of walks that choose the next direction
+  HWY_NOINLINE void eval(const Vec3& wi, VF f_cos[4], VF& pdf) const {
+    eval_layered(view, optics, wi, seeds[0], f_cos, pdf);
+  }
+  HWY_NOINLINE BsdfSample sample(const Draw& draw) const {
+    return sample_layered(view, optics, draw.choice, draw.u, draw.v, seeds[1]);
+  }
+};
 
 void shade_layered_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
-  const Group& group = group_of(shade, ShadeKind::layered);
-  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
-    const LayeredOptics optics = layered_optics(world, shade, i);
-    const Frame frame = shading_frame(world, shade, i);
-    const LayeredView view = make_layered_view(to_local(frame, load(shade.wo, i)), optics, work.draw_mirror);
-    if (work.weigh_light) weigh_light(view, optics, frame, work.depth, shade, i, shadow);
-    if (work.draw_next) draw_next(view, optics, frame, work.depth, shade, i);
-  }
+  shade_spreading(world, ShadeKind::layered, work, shade, shadow, [&](size_t i, const Vec3& wo) HWY_ATTR {
+    LayeredLobe lobe;
+    lobe.optics = layered_optics(world, shade, i);
+    lobe.view = make_layered_view(wo, lobe.optics, work.draw_mirror);
+    for (uint32_t purpose = 0; purpose < 2; ++purpose) lobe.seeds[purpose] = walk_seed(shade, i, work.depth, purpose);
+    return lobe;
+  });
 }
 
 void shade_layered_mirror_kernel(const World& world, ShadeStream& shade) {
-  const Group& group = group_of(shade, ShadeKind::layered);
-  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
-    const LayeredOptics optics = layered_optics(world, shade, i);
-    const Vec3 wo = load(shade.wo, i), normal = load(shade.shading_normal, i);
-    VF weight[4];
-    layered_mirror(optics, hn::Abs(dot(wo, normal)), weight);
-    store(reflect(-wo, normal), shade.next_direction, i);
-    store(weight, shade.next_weight, i);
-    store(hn::Zero(FloatTag()), shade.next_pdf, i);
-    store(splat(1.0f), shade.next_eta_scale, i);
-  }
+  shade_mirror(ShadeKind::layered, shade, [&](size_t i, VF cos_theta, VF weight[4]) HWY_ATTR {
+    layered_mirror(layered_optics(world, shade, i), cos_theta, weight);
+  });
 }
 
 }  // namespace

@@ -22,25 +22,22 @@ HWY_INLINE RoughOptics rough_optics(const World& world, const ShadeStream& shade
   return optics;
 }
 
-void shade_rough_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
-  const Group& group = group_of(shade, ShadeKind::rough);
-  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
-    const RoughOptics optics = rough_optics(world, shade, i);
-    const Frame frame = shading_frame(world, shade, i);
-    const RoughLobe lobe = make_rough_lobe(to_local(frame, load(shade.wo, i)), optics);
-    VF f_cos[4], pdf, u, v;
-    if (work.weigh_light) {
-      eval_rough(lobe, optics, to_local(frame, load(shade.light_direction, i)), f_cos, pdf);
-      append_shadow_rays(shade, i, f_cos, pdf, shadow);
-    }
-    if (!work.draw_next) continue;
-    const PointKey key = point_key(shade, i);
-    const VF choice = sample_1d(key, splat_u(bounce_dimension(work.depth, lobe_dimension)));
-    sample_2d(key, splat_u(bounce_dimension(work.depth, direction_dimension)), &u, &v);
-    const BsdfSample next = sample_rough(lobe, optics, choice, u, v);
-    store_next(frame, next.wi, next.weight, next.pdf, shade, i);
-    store(splat(1.0f), shade.next_eta_scale, i);
+struct LobePair {
+  RoughOptics optics;
+  RoughLobe lobe;
+  HWY_INLINE void eval(const Vec3& wi, VF f_cos[4], VF& pdf) const { eval_rough(lobe, optics, wi, f_cos, pdf); }
+  HWY_INLINE BsdfSample sample(const Draw& draw) const {
+    return sample_rough(lobe, optics, draw.choice, draw.u, draw.v);
   }
+};
+
+void shade_rough_kernel(const World& world, const ShadeWork& work, ShadeStream& shade, ShadowStream& shadow) {
+  shade_spreading(world, ShadeKind::rough, work, shade, shadow, [&](size_t i, const Vec3& wo) HWY_ATTR {
+    LobePair pair;
+    pair.optics = rough_optics(world, shade, i);
+    pair.lobe = make_rough_lobe(wo, pair.optics);
+    return pair;
+  });
 }
 
 }  // namespace

@@ -40,10 +40,7 @@ void shade_thin_dielectric_kernel(const World& world, uint32_t depth, Branch bra
     const Vec3 wo = load(shade.wo, i), normal = load(shade.shading_normal, i);
     ThinSample next = sample_thin(hn::Abs(dot(wo, normal)), optics, branch_number(shade, i, depth, branch));
     keep_branch(branch, hn::Lt(wo.x, wo.x), next.transmitted, next.probability, next.weight);
-    store(if_then_else(next.transmitted, -wo, reflect(-wo, normal)), shade.next_direction, i);
-    store(next.weight, shade.next_weight, i);
-    store(hn::Zero(FloatTag()), shade.next_pdf, i);
-    store(splat(1.0f), shade.next_eta_scale, i);
+    store_delta(if_then_else(next.transmitted, -wo, reflect(-wo, normal)), next.weight, shade, i);
   }
 }
 

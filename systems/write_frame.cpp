@@ -110,12 +110,16 @@ FileError write_frame(const Film& film, const WriteSettings& settings) {
   const auto note = [&errors](const FileError& error) {
     if (error) errors = errors ? *errors + "\n" + *error : *error;
   };
-  const Picture picture = develop(observe(film, Observer::cie1931, settings.look.threads));
+  const XyzPicture xyz = observe(film, Observer::cie1931, settings.look.threads);
+  const Picture picture = develop(xyz);
   if (!settings.exr_path.empty()) {
     FrameHeader header = settings.header;
-    header.chromaticities = display_chromaticities(ColorSpace::srgb);
-    note(write_exr(settings.exr_path, picture, header, sample_totals(film), settings.checkpoint ? &film : nullptr,
-                   &film));
+    header.chromaticities = display_chromaticities(settings.primaries);
+    const bool is_srgb = settings.primaries == ColorSpace::srgb;
+    const Picture other =
+        is_srgb ? Picture() : develop(xyz, display_matrix(settings.primaries, std::nullopt, Adaptation::cat16));
+    note(write_exr(settings.exr_path, is_srgb ? picture : other, header, sample_totals(film),
+                   settings.checkpoint ? &film : nullptr, &film));
   }
   if (!settings.png_path.empty())
     note(write_developed_png(settings.png_path, develop(film, picture, settings.look), settings.header.software));

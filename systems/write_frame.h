@@ -31,10 +31,11 @@ struct Look {
 struct WriteSettings {
   std::string exr_path;  // empty: none
   std::string png_path;  // empty: none
-  FrameHeader
-      header;  // of the EXR, which has the means of the film's bands; its chromaticities are set to the display's
-  Look look;   // of the PNG; the EXR is linear sRGB, neither adapted nor exposed
-  bool checkpoint = true;  // the EXR holds the film too; false is --preview-only
+  FrameHeader header;    // of the EXR, which has the means of the film's bands; its chromaticities are set to those of
+                         // `primaries`
+  ColorSpace primaries = ColorSpace::srgb;  // of the EXR, which is linear, neither adapted nor exposed
+  Look look;                                // of the PNG
+  bool checkpoint = true;                   // the EXR holds the film too; false is --preview-only
 };
 
 // The film as an observer sees it: its exact XYZ for cie1931, else the integral over its bands, which it must have.

@@ -13,7 +13,7 @@ double filter_offset(const PixelFilter& filter, double radius, ReferenceRandom& 
     double height = 1;
     if (filter.kind == FilterKind::triangle) height = 1 - std::abs(x) / radius;
     if (filter.kind == FilterKind::gaussian) {
-      const double s = -0.5 / (filter.sigma * filter.sigma), edge = std::exp(s * radius * radius);
+      const double sigma = filter.parameters.sigma, s = -0.5 / (sigma * sigma), edge = std::exp(s * radius * radius);
       height = (std::exp(s * x * x) - edge) / (1 - edge);
     }
     if (random() < height) return x;

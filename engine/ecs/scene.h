@@ -51,6 +51,8 @@ struct Filter {
   FilterKind kind = FilterKind::gaussian;
   float radius_x = 1.5f, radius_y = 1.5f;  // pixels
   float sigma = 0.5f;                      // pixels; gaussian only
+  float b = 1 / 3.0f, c = 1 / 3.0f;        // mitchell only
+  float tau = 3;                           // pixels; sinc only
 };
 
 // Which light is followed (DESIGN.md, section 1). local: what the eye ray meets, lit by the light sources. recursive:
@@ -80,7 +82,11 @@ struct RenderSettings {
   bool pixel_jitter = true;                    // false: all samples of a pixel go through its centre, and the lens's
   double shutter_open = 0, shutter_close = 1;  // seconds; close after open. What moves is seen all the time in between
   float sensor_scale = 1;                      // exposure time times ISO / 100: multiplies what the film records
-  float exposure_stops = 0;                    // tone mapping only
+  // cd/m^2 after sensor_scale: samples of which X, Y or Z is above are scaled down until none is.
+  float largest_component = std::numeric_limits<float>::infinity();
+  float white_balance_kelvin = 0;  // CIE daylight (from 4000 K) that is recorded as the colour space's white; 0: none
+  ColorSpace primaries = ColorSpace::srgb;  // of the EXR, one of those that scenes may name
+  float exposure_stops = 0;                 // tone mapping only
   ColorMode color = ColorMode::spectral;
 };
 

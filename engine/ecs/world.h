@@ -299,6 +299,7 @@ struct World {
   SpectrumSet spectra;
   RenderSettings settings;
   PixelFilter filter;
+  std::array<float, 9> sensor_matrix = {};  // on XYZ, row by row; only where the scene has a white balance
   uint32_t branches = 1;        // rays that leave one smooth surface at most: 2 where light is refracted, 5 dispersed
   bool disperses = false;       // some medium's index differs between wavelengths
   bool needs_tangents = false;  // an anisotropic material is present

@@ -140,7 +140,8 @@ void add_band_samples(TileFilm& tile, std::span<const uint32_t> pixel, const Ban
       BandSum& sum = bands[std::min(band, band_count - 1)];
       if (samples.adds_weights) sum.add_weight(static_cast<uint64_t>(weight * 0x1p20f));
       if (recorded[i] == 0) continue;
-      const float radiance = samples.radiance[j][i] * samples.scale * weight;
+      const float row_scale = samples.row_scale == nullptr ? 1 : samples.row_scale[i];
+      const float radiance = samples.radiance[j][i] * samples.scale * weight * row_scale;
       if (std::abs(radiance) <= band_sample_limit) [[likely]]
         sum.add_radiance(to_units<band_unit_log2>(radiance));
       else

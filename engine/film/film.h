@@ -129,6 +129,7 @@ void add_samples(TileFilm& tile, std::span<const uint32_t> pixel, std::span<cons
 struct BandSamples {
   std::array<const float*, 4> lambda_nm, inv_pdf_nm, radiance;  // nm, nm (at most 2^14), W m^-2 sr^-1 nm^-1
   float scale = 1;                                              // on the radiance
+  const float* row_scale = nullptr;                             // the same of each row; null: 1
   bool adds_weights = true;  // false: the weights of these samples have been added with another part of their light
 };
 

@@ -9,12 +9,15 @@ constexpr KeySpec scene[] = {{"$schema"},           {"metamer", required}, {"uni
                              {"textures"},          {"materials"},         {"media"}, {"meshes"},   {"curves"},
                              {"entities", required}};
 constexpr KeySpec settings[] = {
-    {"size"},         {"samples"},  {"max_depth"},          {"seed"},          {"integrator"}, {"shadows"},
-    {"filter"},       {"exposure"}, {"sensor_scale"},       {"spectral"},      {"color"},      {"crop"},
-    {"pixel_jitter"}, {"shutter"},  {"occlusion_distance"}, {"clamp_indirect"}};
+    {"size"},          {"samples"},  {"max_depth"},    {"seed"},         {"integrator"},        {"shadows"},
+    {"filter"},        {"exposure"}, {"sensor_scale"}, {"spectral"},     {"largest_component"}, {"white_balance"},
+    {"primaries"},     {"color"},    {"crop"},         {"pixel_jitter"}, {"shutter"},           {"occlusion_distance"},
+    {"clamp_indirect"}};
 constexpr KeySpec filter_box[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_triangle[] = {{"type", required}, {"radius"}};
 constexpr KeySpec filter_gaussian[] = {{"type", required}, {"radius"}, {"sigma"}};
+constexpr KeySpec filter_mitchell[] = {{"type", required}, {"radius"}, {"b"}, {"c"}};
+constexpr KeySpec filter_sinc[] = {{"type", required}, {"radius"}, {"tau"}};
 constexpr KeySpec spectrum[] = {{"constant"}, {"table"}, {"named"},   {"blackbody"}, {"daylight"}, {"rgb"},
                                 {"space"},    {"scale"}, {"samples"}, {"sigmoid"},   {"times"}};
 constexpr KeySpec texture_reference[] = {{"texture", required}};
@@ -112,6 +115,8 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"filter.box", filter_box},
                                 {"filter.triangle", filter_triangle},
                                 {"filter.gaussian", filter_gaussian},
+                                {"filter.mitchell", filter_mitchell},
+                                {"filter.sinc", filter_sinc},
                                 {"spectrum", spectrum},
                                 {"texture_reference", texture_reference},
                                 {"texture.constant", texture_constant},

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "engine/film/bands.h"
 #include "scenes/native/transforms.h"
+#include "systems/display_colour.h"
 
 namespace metamer {
 namespace {
@@ -14,10 +16,10 @@ Filter read_filter(const SceneContext& context, const Json::Value& value) {
   const JsonObject object(context.reader, value, "filter");
   if (!object.is_valid()) return {};
   Filter filter;
-  filter.kind = object.type() == "box"        ? FilterKind::box
-                : object.type() == "triangle" ? FilterKind::triangle
-                                              : FilterKind::gaussian;
-  const double usual = object.type() == "box" ? 0.5 : object.type() == "triangle" ? 1 : 1.5;
+  constexpr double usual_radii[] = {0.5, 1, 1.5, 2, 4};
+  const auto named = std::find(filter_names.begin(), filter_names.end(), object.type());
+  filter.kind = static_cast<FilterKind>(named - filter_names.begin());
+  const double usual = usual_radii[static_cast<size_t>(filter.kind)];
   std::array<double, 2> radius{usual, usual};
   if (const Json::Value* given = object.find("radius")) {
     if (given->isArray())
@@ -28,6 +30,11 @@ Filter read_filter(const SceneContext& context, const Json::Value& value) {
   filter.radius_x = static_cast<float>(radius[0]);
   filter.radius_y = static_cast<float>(radius[1]);
   if (filter.kind == FilterKind::gaussian) filter.sigma = object.number_f("sigma", positive, filter.sigma);
+  if (filter.kind == FilterKind::mitchell) {
+    filter.b = object.number_f("b", any_number, filter.b);
+    filter.c = object.number_f("c", any_number, filter.c);
+  }
+  if (filter.kind == FilterKind::sinc) filter.tau = object.number_f("tau", positive, filter.tau);
   return filter;
 }
 
@@ -76,6 +83,13 @@ RenderSettings read_settings(const SceneContext& context, const Json::Value& val
   settings.seed = object.integer("seed", 0, 0xffffffffu, settings.seed);
   settings.exposure_stops = object.number_f("exposure", stops, settings.exposure_stops);
   settings.sensor_scale = object.number_f("sensor_scale", positive, settings.sensor_scale);
+  if (object.has("largest_component"))
+    settings.largest_component = object.number_f("largest_component", positive, settings.largest_component);
+  if (object.has("white_balance")) {
+    constexpr Range kelvin{least_white_kelvin, most_white_kelvin};
+    settings.white_balance_kelvin = object.number_f("white_balance", kelvin, settings.white_balance_kelvin);
+  }
+  settings.primaries = static_cast<ColorSpace>(object.choice("primaries", color_space_names(), 0));
   if (const Json::Value* spectral = object.find("spectral")) settings.band_count = read_band_count(context, *spectral);
   settings.color = static_cast<ColorMode>(object.choice("color", color_mode_names(), 0));
   if (const Json::Value* crop = object.find("crop")) settings.crop = read_crop(context, *crop);

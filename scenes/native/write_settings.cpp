@@ -3,15 +3,6 @@
 namespace metamer {
 namespace {
 
-std::string_view filter_name(FilterKind kind) {
-  switch (kind) {
-    case FilterKind::box: return "box";
-    case FilterKind::triangle: return "triangle";
-    case FilterKind::gaussian: return "gaussian";
-  }
-  return {};
-}
-
 JsonText write_filter(const Filter& filter) {
   JsonText object = JsonText::object();
   object.add("type", JsonText::string(filter_name(filter.kind)));
@@ -20,6 +11,9 @@ JsonText write_filter(const Filter& filter) {
   else
     object.add("radius", JsonText::numbers(std::array{filter.radius_x, filter.radius_y}));
   if (filter.kind == FilterKind::gaussian) object.add("sigma", JsonText::number(filter.sigma));
+  if (filter.kind == FilterKind::mitchell)
+    object.add("b", JsonText::number(filter.b)).add("c", JsonText::number(filter.c));
+  if (filter.kind == FilterKind::sinc) object.add("tau", JsonText::number(filter.tau));
   return object;
 }
 
@@ -47,6 +41,12 @@ JsonText write_settings(const RenderSettings& settings) {
   if (settings.exposure_stops != usual.exposure_stops)
     object.add("exposure", JsonText::number(settings.exposure_stops));
   if (settings.sensor_scale != usual.sensor_scale) object.add("sensor_scale", JsonText::number(settings.sensor_scale));
+  if (settings.largest_component != usual.largest_component)
+    object.add("largest_component", JsonText::number(settings.largest_component));
+  if (settings.white_balance_kelvin != usual.white_balance_kelvin)
+    object.add("white_balance", JsonText::number(settings.white_balance_kelvin));
+  if (settings.primaries != usual.primaries)
+    object.add("primaries", JsonText::string(color_space_name(settings.primaries)));
   if (settings.band_count != usual.band_count) object.add("spectral", JsonText::integer(settings.band_count));
   if (settings.color != usual.color) object.add("color", JsonText::string(color_mode_name(settings.color)));
   return object;

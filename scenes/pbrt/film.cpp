@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "engine/film/bands.h"
+#include "engine/spectrum/sources.h"
 #include "scenes/pbrt/reader.h"
 
 namespace metamer::pbrt {
@@ -54,6 +57,19 @@ void read_crop(Reader& reader, Parameters& parameters) {
   settings.crop = {pixels->x / size.x, pixels->y / size.x, pixels->z / size.y, pixels->w / size.y};
 }
 
+// The temperature whose light pbrt takes for `whitebalance`: below 4000 K, where there is no daylight, illuminant A.
+float white_balance(Parameters& parameters) {
+  constexpr double illuminant_a_kelvin = 2856, most_kelvin = daylight_max_kelvin / daylight_shift;
+  const double given = parameters.number_from("whitebalance", 0, 0), kelvin = given * daylight_shift;
+  if (given == 0) return 0;
+  if (given > most_kelvin) {
+    parameters.error("whitebalance", fmt::format("'whitebalance' expects at most {:.0f} kelvin, not {}",
+                                                 std::floor(most_kelvin), given));
+    return 0;
+  }
+  return static_cast<float>(kelvin < daylight_min_kelvin ? illuminant_a_kelvin : kelvin);
+}
+
 void read_sensor(Reader& reader, Parameters& parameters) {
   reader.iso = parameters.positive("iso", 100);
   const std::string sensor = parameters.string("sensor", "cie1931");
@@ -62,9 +78,7 @@ void read_sensor(Reader& reader, Parameters& parameters) {
   } else if (sensor != "cie1931") {
     parameters.unsupported("sensor", "cie1931 is used");
   }
-  if (parameters.number("whitebalance", 0) != 0) {
-    parameters.unsupported("whitebalance", "the film is not balanced; 'metamer develop --white' does it afterwards");
-  }
+  reader.scene.settings.white_balance_kelvin = white_balance(parameters);
 }
 
 }  // namespace
@@ -93,16 +107,11 @@ void read_film(Reader& reader, std::string_view kind, Parameters& parameters) {
                               "Film's 'filename' is not used: outputs are named after the scene, or by -o",
                               Strict::allows);
   }
-  parameters.unsupported("maxcomponentvalue", "samples are not clamped");
+  constexpr double no_limit = std::numeric_limits<double>::infinity();
+  reader.scene.settings.largest_component = static_cast<float>(parameters.positive("maxcomponentvalue", no_limit));
   parameters.number("diagonal", 35);  // only the realistic camera's business
   parameters.boolean("savefp16", true);
-  if (reader.state.color_space != ColorSpace::srgb) {
-    reader.messages.warning_once(
-        "film space", parameters.source(),
-        fmt::format("pictures in the colour space '{}' are not supported; the EXR has sRGB's primaries, and 'metamer "
-                    "develop --display' writes others",
-                    color_space_name(reader.state.color_space)));
-  }
+  reader.scene.settings.primaries = reader.state.color_space;
 }
 
 void read_filter(Reader& reader, std::string_view kind, Parameters& parameters) {
@@ -119,13 +128,15 @@ void read_filter(Reader& reader, std::string_view kind, Parameters& parameters) 
   } else if (kind == "triangle") {
     filter.kind = FilterKind::triangle;
     radius = 2;
-  } else if (kind != "gaussian") {
-    parameters.ignore_the_rest();
-    reader.messages.warning(
-        parameters.source(),
-        fmt::format("{} is not supported; gaussian of radius 1.5 and sigma 0.5 pixels is used", parameters.what()));
-    reader.scene.settings.filter = filter;
-    return;
+  } else if (kind == "mitchell") {
+    filter.kind = FilterKind::mitchell;
+    filter.b = static_cast<float>(parameters.number("B", 1.0 / 3));
+    filter.c = static_cast<float>(parameters.number("C", 1.0 / 3));
+    radius = 2;
+  } else if (kind == "sinc") {
+    filter.kind = FilterKind::sinc;
+    filter.tau = static_cast<float>(parameters.positive("tau", 3));
+    radius = 4;
   }
   filter.radius_x = static_cast<float>(parameters.positive("xradius", radius));
   filter.radius_y = static_cast<float>(parameters.positive("yradius", radius));

@@ -14,6 +14,7 @@
 #include "scenes/program/failure.h"
 #include "scenes/program/look_report.h"
 #include "scenes/program/signals.h"
+#include "systems/compare_pictures.h"
 #include "systems/develop_bands.h"
 #include "systems/display_colour.h"
 #include "systems/write_frame.h"
@@ -55,7 +56,7 @@ constexpr const char* tone_map_setting = "tonemap";
 
 // What there is to develop.
 struct Seen {
-  std::optional<XyzPicture> xyz;  // of bands
+  std::optional<XyzPicture> xyz;  // of bands, or of a picture in other primaries
   Picture picture;                // else linear sRGB
   FrameHeader header;
   SampleTotals samples;  // none where only bands were read
@@ -76,6 +77,8 @@ Seen look_at_file(const std::string& path, Observer observer, uint32_t threads) 
     if (const FileError error = read_picture(path, seen.picture, seen.header, seen.samples))
       throw Failure(exit_wrong_input, *error);
     refuse_developed(path, seen.header);
+    if (seen.header.chromaticities != display_chromaticities(ColorSpace::srgb))
+      seen.xyz = xyz_of(seen.picture, seen.header.chromaticities);
     return seen;
   }
   if (!contents.has_bands)

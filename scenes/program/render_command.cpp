@@ -24,15 +24,6 @@ namespace {
 // Read by the signal handlers, so it lives as long as the program.
 Cancellation cancellation;
 
-std::string_view filter_name(FilterKind kind) {
-  switch (kind) {
-    case FilterKind::box: return "box";
-    case FilterKind::triangle: return "triangle";
-    case FilterKind::gaussian: break;
-  }
-  return "gaussian";
-}
-
 // What the files say about the frame: nothing that depends on the machine, the threads or the time.
 WriteSettings write_settings(const RenderArguments& arguments, const Outputs& outputs, const std::string& title,
                              const RenderSettings& settings) {
@@ -54,7 +45,12 @@ WriteSettings write_settings(const RenderArguments& arguments, const Outputs& ou
   const TileRect rendered = rendered_pixels(settings);
   if (rendered.width() < settings.width || rendered.height() < settings.height)
     write.header.window = {rendered.x0, rendered.y0, settings.width, settings.height};
+  if (settings.largest_component < std::numeric_limits<float>::infinity())
+    write.header.settings.emplace_back("largest_component", fmt::format("{}", settings.largest_component));
+  if (settings.white_balance_kelvin > 0)
+    write.header.settings.emplace_back("white_balance", fmt::format("{}", settings.white_balance_kelvin));
   if (settings.band_count > 0) write.header.settings.emplace_back("spectral", std::to_string(settings.band_count));
+  write.primaries = settings.primaries;
   write.look = arguments.look;
   write.look.exposure_stops = settings.exposure_stops;
   write.look.threads = arguments.threads;

@@ -206,6 +206,7 @@ TEST(Accumulate, LeavesOutTheLanesWithoutAPixel) {
   for (uint32_t i = 0; i < 16; ++i) {
     batch.slots.pixel[i] = i % 2 == 0 ? i : dead_lane;
     batch.slots.sample[i] = 0;
+    batch.slots.weight[i] = 1;
     for (size_t j = 0; j < 4; ++j) {
       batch.slots.lambda_nm[j][i] = 555;
       batch.slots.inv_pdf_nm[j][i] = 1;

@@ -38,8 +38,8 @@ TEST(NativeWriter, KnowsEveryFieldThatASceneHas) {
   EXPECT_EQ(field_count<MediumGrid>, 11u);  // their means are written, which is said
   EXPECT_EQ(field_count<MediumSlot>, 2u);
   EXPECT_EQ(field_count<Source>, 2u);  // a new file has lines of its own
-  EXPECT_EQ(sizeof(RenderSettings), 128u);
-  EXPECT_EQ(sizeof(Filter), 16u);
+  EXPECT_EQ(sizeof(RenderSettings), 152u);
+  EXPECT_EQ(sizeof(Filter), 28u);
   EXPECT_EQ(sizeof(Image), 96u);
   EXPECT_EQ(sizeof(Texture), 172u);
   EXPECT_EQ(sizeof(TextureMapping), 92u);
@@ -171,9 +171,26 @@ TEST(NativeWriter, ReflectancesOfFewDecimalsAreRgbAgain) {
   expect_converts(read.scene);
 }
 
+TEST(NativeWriter, FiltersWithNegativeLobesAreKept) {
+  const Filter mitchell = converted(read_text("PixelFilter \"mitchell\" \"float B\" 0.2 \"float C\" 0.4\n"
+                                              "Camera \"perspective\" WorldBegin LightSource \"infinite\"")
+                                        .scene)
+                              .settings.filter;
+  EXPECT_EQ(mitchell.kind, FilterKind::mitchell);
+  EXPECT_EQ(mitchell.b, 0.2f);
+  EXPECT_EQ(mitchell.c, 0.4f);
+  const Filter sinc = converted(read_text("PixelFilter \"sinc\" \"float tau\" 2.5\n"
+                                          "Camera \"perspective\" WorldBegin LightSource \"infinite\"")
+                                    .scene)
+                          .settings.filter;
+  EXPECT_EQ(sinc.kind, FilterKind::sinc);
+  EXPECT_EQ(sinc.tau, 2.5f);
+}
+
 TEST(NativeWriter, SettingsAndCameraAreKept) {
   const ReadScene read = read_text(R"(
-    Film "rgb" "integer xresolution" 33 "integer yresolution" 21 "float iso" 250
+    ColorSpace "rec2020" Film "rgb" "integer xresolution" 33 "integer yresolution" 21 "float iso" 250
+      "float maxcomponentvalue" 7.5 "float whitebalance" 5123
     PixelFilter "triangle" "float xradius" 0.3 "float yradius" 3.25
     Sampler "halton" "integer pixelsamples" 5 "integer seed" 99
     Integrator "path" "integer maxdepth" 70000
@@ -191,6 +208,9 @@ TEST(NativeWriter, SettingsAndCameraAreKept) {
   EXPECT_EQ(back.settings.samples_per_pixel, 5u);
   EXPECT_EQ(back.settings.seed, 99u);
   EXPECT_EQ(back.settings.max_depth, 70000u);
+  EXPECT_EQ(back.settings.largest_component, 7.5f);
+  EXPECT_EQ(back.settings.white_balance_kelvin, read.scene.settings.white_balance_kelvin);
+  EXPECT_EQ(back.settings.primaries, ColorSpace::rec2020);
   const Camera camera = back.registry.table<Camera>().get(0);
   EXPECT_EQ(camera.kind, CameraKind::orthographic);
   EXPECT_EQ(camera.screen_window, read.get<Camera>().screen_window);

@@ -23,11 +23,6 @@ TEST_P(PbrtRemarks, AreMadeAtTheirLine) {
 INSTANTIATE_TEST_SUITE_P(
     Settings, PbrtRemarks,
     testing::ValuesIn(std::vector<Remark>{
-        {"Film \"rgb\"\n\"float whitebalance\" 5000",
-         "3: warning: Film \"rgb\": 'whitebalance' is not supported yet; the film is not balanced; 'metamer develop "
-         "--white' does it afterwards"},
-        {"Film \"rgb\"\n\"float maxcomponentvalue\" 5",
-         "3: warning: Film \"rgb\": 'maxcomponentvalue' is not supported yet; samples are not clamped"},
         {"\nFilm \"rgb\" \"integer pixelbounds\" [0 9 0 9] \"float cropwindow\" [0 1 0 1]",
          "3: warning: both 'pixelbounds' and 'cropwindow' are given; the former counts"},
         {"Option \"disabletexturefiltering\" true",

@@ -77,7 +77,7 @@ TEST_F(RenderCommand, StrictMakesErrorsOfWhatIsNotSupported) {
                 "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\n" +
                     world);
   folder_.write("bad.pbrt",
-                "Camera \"perspective\"\nPixelFilter \"sinc\"\nIntegrator \"bdpt\"\n"
+                "Camera \"perspective\"\nIntegrator \"function\"\nIntegrator \"bdpt\"\n"
                 "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\n" +
                     world);
   EXPECT_EQ(run({"render", "good.pbrt", "--strict"}).exit_code, 0);
@@ -87,7 +87,7 @@ TEST_F(RenderCommand, StrictMakesErrorsOfWhatIsNotSupported) {
                                                          {"compare", "bad.pbrt", "--strict"}}) {
     const ProgramResult result = run(command);
     EXPECT_EQ(result.exit_code, 2) << command[0];
-    EXPECT_THAT(result.err, AllOf(HasSubstr("bad.pbrt:2: error: PixelFilter \"sinc\" is not supported"),
+    EXPECT_THAT(result.err, AllOf(HasSubstr("bad.pbrt:2: error: Integrator \"function\" is not supported"),
                                   HasSubstr("bad.pbrt:3: error: Integrator \"bdpt\" is not supported")));
   }
   EXPECT_FALSE(std::filesystem::exists(folder() / "bad.exr"));

@@ -139,7 +139,6 @@ std::vector<std::string> registry_text(const Scene& scene) {
 }
 
 std::string settings_text(const RenderSettings& s) {
-  constexpr std::string_view filters[] = {"box", "triangle", "gaussian"};
   std::string text;
   if (s.width != 1280 || s.height != 720) text += fmt::format(" {} x {} pixels", s.width, s.height);
   if (s.samples_per_pixel != 16) text += fmt::format(" {} samples", s.samples_per_pixel);
@@ -148,13 +147,18 @@ std::string settings_text(const RenderSettings& s) {
   if (s.band_count != 0) text += fmt::format(" {} bands", s.band_count);
   const Filter f = s.filter;
   if (f.kind != FilterKind::gaussian || f.radius_x != 1.5f || f.radius_y != 1.5f || f.sigma != 0.5f)
-    text += fmt::format(" filter {} {:.4g} {:.4g} {:.4g}", filters[static_cast<size_t>(f.kind)], f.radius_x, f.radius_y,
-                        f.sigma);
+    text += fmt::format(" filter {} {:.4g} {:.4g} {:.4g}", filter_name(f.kind), f.radius_x, f.radius_y, f.sigma);
+  if (f.kind == FilterKind::mitchell) text += fmt::format(" b {:.4g} c {:.4g}", f.b, f.c);
+  if (f.kind == FilterKind::sinc) text += fmt::format(" tau {:.4g}", f.tau);
   if (s.crop != glm::dvec4(0, 1, 0, 1))
     text += fmt::format(" crop {:.4g} {:.4g} {:.4g} {:.4g}", s.crop.x, s.crop.y, s.crop.z, s.crop.w);
   if (!s.pixel_jitter) text += " without jitter";
   if (s.shutter_open != 0 || s.shutter_close != 1)
     text += fmt::format(" shutter {:.4g} to {:.4g}", s.shutter_open, s.shutter_close);
+  if (s.largest_component < std::numeric_limits<float>::infinity())
+    text += fmt::format(" clamp {:.4g}", s.largest_component);
+  if (s.white_balance_kelvin != 0) text += fmt::format(" balance {:.4g}", s.white_balance_kelvin);
+  if (s.primaries != ColorSpace::srgb) text += fmt::format(" primaries {}", color_space_name(s.primaries));
   if (s.sensor_scale != 1) text += fmt::format(" exposure {:.4g}", s.sensor_scale);
   return text.empty() ? "" : "settings" + text;
 }
