@@ -41,7 +41,7 @@ void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
 }
 
 constexpr size_t columns_in_all =
-    2 * 27 + 8 + (11 * 3 + 6 * 4 + 4 + 9 + 5 + 4 + 2 + 4) + (6 + 1 + 4 + 2 + 4 + 1) + (12 + 2) + 1;
+    2 * 27 + 8 + (11 * 3 + 6 * 4 + 4 + 9 + 5 + 4 + 2 + 4) + (6 + 1 + 4 + 2 + 4 + 1 + 2) + (12 + 2) + 1;
 constexpr size_t column_bytes = (sorted_capacity + column_lanes) * sizeof(float) + 2 * column_alignment;
 
 }  // namespace
@@ -62,6 +62,8 @@ Batch::Batch() : arena(columns_in_all * column_bytes) {
   take_all(arena, rows, shadow.lambda_nm);
   shadow.volume = arena.take<uint32_t>(rows);
   shadow.time = arena.take<float>(rows);
+  shadow.pixel_seed = arena.take<uint32_t>(rows);
+  shadow.index = arena.take<uint32_t>(rows);
   take_all(arena, rows, slots.lambda_nm);
   take_all(arena, rows, slots.inv_pdf_nm);
   take_all(arena, rows, slots.radiance);
