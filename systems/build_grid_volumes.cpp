@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 
@@ -18,6 +19,8 @@ namespace {
 // A table of majorants is at most so many cells long. On clouds of 100 to 500 voxels a side (bench/volumes_bench.cpp)
 // 32 to 128 differ little: smaller cells save lookups and cost steps.
 constexpr int most_cells_a_side = 64;
+// Rays through a medium that glows collide so often on its longest side, however thin it is.
+constexpr double glowing_collisions = 16;
 constexpr double wien_nm_kelvin = 2.897771955e6;  // CODATA 2018
 constexpr int least_cell = 4;                     // voxels
 // Voxels; a cell that ends where a voxel's share begins does not reach into it. Lookups are cut off at the majorant.
@@ -143,7 +146,6 @@ uint32_t GridVolumeBuilder::add(Entity entity, const Medium& medium, const glm::
   volume.stochastic = component.lookup == GridLookup::stochastic;
   const SpectrumSet& spectra = world_.spectra;
   const bool absorbs = medium.scale > 0 && spectra.max_value(medium.sigma_a) > 0;
-  const bool scatters = medium.scale > 0 && spectra.max_value(medium.sigma_s) > 0;
   volume.glows =
       absorbs && medium.emission_scale > 0 && (volume.temperature.is_used() || spectra.max_value(medium.emission) > 0);
   if (volume.temperature.is_used()) add_blackbody_coefficients(world_);
@@ -154,7 +156,7 @@ uint32_t GridVolumeBuilder::add(Entity entity, const Medium& medium, const glm::
     error(wrong);
     return no_index;
   }
-  build_majorants(absorbs, scatters, volume);
+  build_majorants(medium, volume);
   world_.grid_volumes.push_back(volume);
   world_.has_grids = true;
   return static_cast<uint32_t>(world_.grid_volumes.size() - 1);
@@ -200,31 +202,60 @@ std::string GridVolumeBuilder::place(const glm::dmat4& to_world, GridVolume& vol
   return {};
 }
 
-void GridVolumeBuilder::build_majorants(bool absorbs, bool scatters, GridVolume& volume) {
-  const size_t first = world_.majorants.size();
+// Of one factor in a cell.
+ValueRange GridVolumeBuilder::range_in(const GridUse& use, const glm::dvec3& cell, float most) const {
+  ValueRange range;
+  if (!use.is_used()) {
+    range.add(1);
+    return range;
+  }
+  glm::dmat4 m(1);
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) m[c][r] = double{use.to_index[4 * r + c]};
+  const DoubleBox box = transformed(m, cell, cell + 1.0);
+  range = grids_.range(use.grid, glm::ivec3(glm::floor(box.lower + cell_margin)),
+                       glm::ivec3(glm::floor(box.upper - cell_margin)));
+  if (!(most > 0)) return {0, 0};
+  return {range.least / most, range.greatest / most};
+}
+
+bool GridVolumeBuilder::may_glow(const GridVolume& volume, const glm::dvec3& cell) const {
+  if (!volume.glows || !(range_in(volume.emission, cell, 1).greatest > 0)) return false;
+  if (!volume.temperature.is_used()) return true;
+  const float warmest = range_in(volume.temperature, cell, 1).greatest;
+  return (warmest - volume.temperature_offset) * volume.temperature_scale > 100;
+}
+
+void GridVolumeBuilder::build_majorants(const Medium& medium, GridVolume& volume) {
   const size_t nx = static_cast<size_t>(volume.cells[0]), ny = static_cast<size_t>(volume.cells[1]);
   const size_t count = nx * ny * static_cast<size_t>(volume.cells[2]);
+  const size_t first = world_.majorants.size() / 2;
   volume.first_majorant = static_cast<uint32_t>(first);
-  world_.majorants.resize(first + count);
-  float* const majorants = world_.majorants.data() + first;
-  // Of one factor in the cell at `cell`: what lookups there give at most.
-  const auto most = [&](const GridUse& grid_use, const glm::dvec3& cell) {
-    if (!grid_use.is_used()) return 1.0f;
-    glm::dmat4 m(1);
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 4; ++c) m[c][r] = grid_use.to_index[4 * r + c];
-    const DoubleBox box = transformed(m, cell, cell + 1.0);
-    return grids_.greatest(grid_use.grid, glm::ivec3(glm::floor(box.lower + cell_margin)),
-                           glm::ivec3(glm::floor(box.upper - cell_margin)));
-  };
-  const auto share = [](float value, float greatest) { return greatest > 0 ? value / greatest : 0.0f; };
+  world_.majorants.resize(2 * (first + count));
+  float* const majorants = world_.majorants.data() + 2 * first;
+  const SpectrumSet& spectra = world_.spectra;
+  const double absorption = spectra.max_value(medium.sigma_a) * double{volume.sigma_a_most};
+  const double scattering = spectra.max_value(medium.sigma_s) * double{volume.sigma_s_most};
+  const double extinction = double{medium.scale} * (absorption + scattering);
+  // What glows is only seen where rays collide.
+  double longest = 0;
+  for (int i = 0; i < 3; ++i) {
+    const float* const row = volume.to_cells + 4 * i;
+    const glm::dvec3 cells_per_metre(row[0], row[1], row[2]);
+    longest = std::max(longest, volume.cells[i] / glm::length(cells_per_metre));
+  }
+  const float least = extinction > 0 ? static_cast<float>(glowing_collisions / (extinction * longest)) : 0;
   for_blocks(count, 0, 256, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const glm::dvec3 cell(double(i % nx), double(i / nx % ny), double(i / (nx * ny)));
-      float factor = 0;
-      if (absorbs) factor = share(most(volume.sigma_a, cell), volume.sigma_a_most);
-      if (scatters) factor = std::max(factor, share(most(volume.sigma_s, cell), volume.sigma_s_most));
-      majorants[i] = factor > 0 ? factor * most(volume.density, cell) : 0.0f;
+      ValueRange factor;
+      if (absorption > 0) factor.add(range_in(volume.sigma_a, cell, volume.sigma_a_most));
+      if (scattering > 0) factor.add(range_in(volume.sigma_s, cell, volume.sigma_s_most));
+      if (!(extinction > 0) || !(factor.greatest > 0)) continue;
+      const ValueRange density = range_in(volume.density, cell, 1);
+      const float most = factor.greatest * density.greatest;
+      majorants[2 * i] = most > 0 && may_glow(volume, cell) ? std::max(most, least) : most;
+      majorants[2 * i + 1] = factor.least * density.least;
     }
   });
 }

@@ -28,7 +28,7 @@ std::vector<glm::ivec3> stored_origins(const Grid& grid) {
 
 struct StoredBrick {
   bool differs = false;  // from the background
-  float greatest = 0;
+  ValueRange range;
 };
 
 // stored_voxels values from `origin` on.
@@ -38,7 +38,6 @@ StoredBrick store_brick(const Grid& grid, glm::ivec3 origin, float* values) {
   for (int above = 0; above < 8; ++above)
     bricks[above] = find_brick(grid, origin + brick_side * glm::ivec3(above & 1, above >> 1 & 1, above >> 2 & 1));
   StoredBrick stored;
-  stored.greatest = grid.background[0];
   for (int z = 0; z < stored_side; ++z)
     for (int y = 0; y < stored_side; ++y)
       for (int x = 0; x < stored_side; ++x) {
@@ -50,7 +49,7 @@ StoredBrick store_brick(const Grid& grid, glm::ivec3 origin, float* values) {
                                   ? background
                                   : grid.values[(brick * brick_voxels + static_cast<size_t>(voxel)) * channels + c];
           stored.differs = stored.differs || value != background;
-          stored.greatest = std::max({stored.greatest, value, background});
+          stored.range.add(value);
           *values++ = value;
         }
       }
@@ -89,6 +88,14 @@ size_t brick_in_node(glm::ivec3 from_lower) {
 
 }  // namespace
 
+namespace {
+ValueRange background_range(const GridRow& row) {
+  ValueRange range;
+  for (uint32_t c = 0; c < row.channels; ++c) range.add(row.background[c]);
+  return range;
+}
+}  // namespace
+
 uint32_t FrozenGrids::row_of(GridId id, std::string& error) {
   const auto known = std::find(ids_.begin(), ids_.end(), id);
   if (known != ids_.end()) return static_cast<uint32_t>(known - ids_.begin());
@@ -112,7 +119,7 @@ void FrozenGrids::freeze(const Grid& grid, GridRow& row, Box& bounds, std::strin
   const size_t floats = static_cast<size_t>(stored_voxels) * grid.channels;
   const size_t first = columns_.values.size();
   first_value_.push_back(first);
-  first_brick_.push_back(static_cast<uint32_t>(greatest_.size()));
+  first_brick_.push_back(static_cast<uint32_t>(ranges_.size()));
   std::vector<glm::ivec3> origins;
   if (error.empty() && !grid.origins.empty()) {
     origins = stored_origins(grid);
@@ -141,8 +148,8 @@ void FrozenGrids::freeze(const Grid& grid, GridRow& row, Box& bounds, std::strin
   for_blocks(kept.size(), 0, 64, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) store_brick(grid, origins[kept[i]], values + first + (i + 1) * floats);
   });
-  greatest_.push_back(std::max({row.background[0], row.background[1], row.background[2]}));
-  for (const size_t i : kept) greatest_.push_back(stored[i].greatest);
+  ranges_.push_back(background_range(row));
+  for (const size_t i : kept) ranges_.push_back(stored[i].range);
   // Tables. Nodes without bricks share one.
   row.first_node = static_cast<uint32_t>(columns_.nodes.size());
   const size_t nodes =
@@ -171,43 +178,50 @@ void FrozenGrids::freeze(const Grid& grid, GridRow& row, Box& bounds, std::strin
 }
 
 float FrozenGrids::greatest(uint32_t row) const {
-  const auto begin = greatest_.begin() + first_brick_[row];
-  const auto end = row + 1 < first_brick_.size() ? greatest_.begin() + first_brick_[row + 1] : greatest_.end();
-  return *std::max_element(begin, end);
+  float most = 0;
+  const size_t end = row + 1 < first_brick_.size() ? first_brick_[row + 1] : ranges_.size();
+  for (size_t brick = first_brick_[row]; brick < end; ++brick) most = std::max(most, ranges_[brick].greatest);
+  return most;
 }
 
-float FrozenGrids::greatest(uint32_t row, glm::ivec3 lower, glm::ivec3 upper) const {
+ValueRange FrozenGrids::range(uint32_t row, glm::ivec3 lower, glm::ivec3 upper) const {
   const GridRow& r = columns_.rows[row];
-  float most = std::max({r.background[0], r.background[1], r.background[2]});
   const glm::ivec3 table(r.lower[0], r.lower[1], r.lower[2]), nodes(r.nodes[0], r.nodes[1], r.nodes[2]);
-  lower = glm::max(lower - table, glm::ivec3(0));
-  upper = glm::min(upper - table, nodes * node_voxels - 1);
-  if (lower.x > upper.x || lower.y > upper.y || lower.z > upper.z) return most;
-  const auto brick_at = [&](glm::ivec3 from_lower) {
-    return size_t{columns_.bricks[columns_.nodes[node_of(r, from_lower)] + brick_in_node(from_lower)]};
-  };
-  const size_t floats = static_cast<size_t>(stored_voxels) * r.channels;
-  const glm::ivec3 size = upper - lower;
+  const glm::ivec3 from = glm::max(lower - table, glm::ivec3(0)), to = glm::min(upper - table, nodes * node_voxels - 1);
+  ValueRange range;
+  if (from != lower - table || to != upper - table) range = background_range(r);
+  if (from.x > to.x || from.y > to.y || from.z > to.z) return range;
+  const glm::ivec3 size = to - from;
   const bool is_small = size.x < brick_side - 1 && size.y < brick_side - 1 && size.z < brick_side - 1;
-  for (int z = lower.z / brick_side; z <= upper.z / brick_side; ++z)
-    for (int y = lower.y / brick_side; y <= upper.y / brick_side; ++y)
-      for (int x = lower.x / brick_side; x <= upper.x / brick_side; ++x) {
+  for (int z = from.z / brick_side; z <= to.z / brick_side; ++z)
+    for (int y = from.y / brick_side; y <= to.y / brick_side; ++y)
+      for (int x = from.x / brick_side; x <= to.x / brick_side; ++x) {
         const glm::ivec3 origin = brick_side * glm::ivec3(x, y, z);
-        const size_t brick = brick_at(origin);
-        if (!is_small) {
-          most = std::max(most, greatest_[first_brick_[row] + (brick - first_value_[row]) / floats]);
-          continue;
-        }
-        const glm::ivec3 from = glm::max(lower - origin, glm::ivec3(0));
-        const glm::ivec3 to = glm::min(upper - origin, glm::ivec3(brick_side - 1)) + 1;
-        for (int k = from.z; k <= to.z; ++k)
-          for (int j = from.y; j <= to.y; ++j)
-            for (int i = from.x; i <= to.x; ++i) {
-              const size_t at = brick + static_cast<size_t>(i + stored_side * (j + stored_side * k)) * r.channels;
-              for (uint32_t c = 0; c < r.channels; ++c) most = std::max(most, columns_.values[at + c]);
-            }
+        if (is_small)
+          add_voxels(row, origin, glm::max(from - origin, glm::ivec3(0)),
+                     glm::min(to - origin, glm::ivec3(brick_side - 1)) + 1, range);
+        else
+          range.add(ranges_[first_brick_[row] + (first_value_of(r, origin) - first_value_[row]) /
+                                                    (static_cast<size_t>(stored_voxels) * r.channels)]);
       }
-  return most;
+  return range;
+}
+
+// Of the brick at `origin` from the table's lower end, the voxels from `first` to `last`, both included.
+void FrozenGrids::add_voxels(uint32_t row, glm::ivec3 origin, glm::ivec3 first, glm::ivec3 last,
+                             ValueRange& range) const {
+  const GridRow& r = columns_.rows[row];
+  const size_t brick = first_value_of(r, origin);
+  for (int k = first.z; k <= last.z; ++k)
+    for (int j = first.y; j <= last.y; ++j)
+      for (int i = first.x; i <= last.x; ++i) {
+        const size_t at = brick + static_cast<size_t>(i + stored_side * (j + stored_side * k)) * r.channels;
+        for (uint32_t c = 0; c < r.channels; ++c) range.add(columns_.values[at + c]);
+      }
+}
+
+size_t FrozenGrids::first_value_of(const GridRow& row, glm::ivec3 from_lower) const {
+  return columns_.bricks[columns_.nodes[node_of(row, from_lower)] + brick_in_node(from_lower)];
 }
 
 }  // namespace metamer

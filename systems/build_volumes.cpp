@@ -23,8 +23,10 @@ bool check_medium(const Scene& scene, Entity entity, const Medium& medium, const
   if (!is_amount(medium.scale)) error(fmt::format("its scale is {}; expected a number of at least 0", medium.scale));
   if (!is_amount(medium.emission_scale))
     error(fmt::format("the scale of its emission is {}; expected a number of at least 0", medium.emission_scale));
-  if (!(medium.g > -1 && medium.g < 1))
-    error(fmt::format("its g is {}; expected a number between -1 and 1, both excluded", medium.g));
+  for (const float g : {medium.g, medium.g2})
+    if (!(g > -1 && g < 1)) error(fmt::format("its g is {}; expected a number between -1 and 1, both excluded", g));
+  if (!(medium.g2_share >= 0 && medium.g2_share <= 1))
+    error(fmt::format("the share of its second lobe is {}; expected a number from 0 to 1", medium.g2_share));
   const std::pair<SpectrumId, const char*> spectra[] = {
       {medium.sigma_a, "sigma_a"}, {medium.sigma_s, "sigma_s"}, {medium.emission, "emission"}};
   for (const auto& [id, name] : spectra)
@@ -55,6 +57,8 @@ uint32_t add_volume(const Medium& medium, uint32_t grid, World& world) {
   table.scale.push_back(medium.scale);
   table.emission_scale.push_back(medium.emission_scale);
   table.g.push_back(medium.g);
+  table.g2.push_back(medium.g2);
+  table.g2_share.push_back(medium.g2_share);
   table.scatters.push_back(scatters);
   table.grid.push_back(grid);
   bool parts = is_chromatic(medium, world);

@@ -20,7 +20,9 @@ class GridVolumeBuilder {
   bool use(Entity entity, GridId id, std::string_view name, uint32_t most_channels, GridUse& use);
   // The cells, and how everything is reached from them; the result says what is wrong.
   std::string place(const glm::dmat4& to_world, GridVolume& volume);
-  void build_majorants(bool absorbs, bool scatters, GridVolume& volume);
+  void build_majorants(const Medium& medium, GridVolume& volume);
+  ValueRange range_in(const GridUse& use, const glm::dvec3& cell, float most) const;
+  bool may_glow(const GridVolume& volume, const glm::dvec3& cell) const;
 
   const Scene& scene_;
   World& world_;

@@ -11,13 +11,15 @@ HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
 namespace {
 
-// Where rays have got to: `collided` ones in a cell with that majorant.
+// Where rays have got to: `collided` ones in a cell with that majorant, and that much at least.
 struct Walked {
   MF collided, left;
-  VF majorant;
+  VF majorant, least;
 };
 
-// Steps from cell to cell, until most lanes have collided or left the grids.
+// Steps from cell to cell, until most lanes have collided or left the grids. `controls`: collisions are of what there
+// is in a cell above its least, and ray_depth is the integral of the least.
+template <bool controls>
 HWY_INLINE Walked walk(const float* majorants, const int32_t cells[3], MF live, RayLanes& lanes, GridWork& work) {
   const FloatTag d;
   const VF zero = hn::Zero(d), one = splat(1.0f);
@@ -28,13 +30,15 @@ HWY_INLINE Walked walk(const float* majorants, const int32_t cells[3], MF live, 
   const VF end = lanes.get(ray_end);
   VF at = lanes.get(ray_at), left = lanes.get(ray_left), depth = lanes.get(ray_depth);
   Vec3 cell = lanes.get3(ray_cell);
-  Walked walked{hn::Ne(zero, zero), hn::Ne(zero, zero), zero};
+  Walked walked{hn::Ne(zero, zero), hn::Ne(zero, zero), zero, zero};
   MF walking = live;
   const size_t few = lane_count() / 4;
   do {
     work.steps += hn::CountTrue(d, walking);
     const VF place = hn::MulAdd(hn::MulAdd(cell.z, ny, cell.y), nx, cell.x);
-    const VF majorant = gather(majorants, hn::ConvertTo(IntTag(), hn::IfThenElseZero(walking, place)));
+    const VI pair = hn::ShiftLeft<1>(hn::ConvertTo(IntTag(), hn::IfThenElseZero(walking, place)));
+    const VF least = controls ? gather(majorants + 1, pair) : zero;
+    const VF majorant = hn::Sub(gather(majorants, pair), least);
     const Vec3 next = {hn::Mul(hn::Add(cell.x, bias.x), inverse.x), hn::Mul(hn::Add(cell.y, bias.y), inverse.y),
                        hn::Mul(hn::Add(cell.z, bias.z), inverse.z)};
     const VF exit = hn::Max(hn::Min(hn::Min(next.x, next.y), hn::Min(next.z, end)), at);
@@ -42,10 +46,15 @@ HWY_INLINE Walked walk(const float* majorants, const int32_t cells[3], MF live, 
     const MF collides = hn::And(walking, hn::Gt(crossed, left));
     const MF moves = hn::AndNot(collides, walking);
     const VF until = hn::Div(left, hn::IfThenElse(collides, majorant, one));
-    depth = hn::Add(depth, hn::IfThenElse(collides, left, hn::IfThenElseZero(moves, crossed)));
-    left = hn::Sub(left, hn::IfThenElseZero(moves, crossed));
+    const VF before = at;
     at = hn::IfThenElse(collides, hn::Min(hn::Add(at, until), exit), hn::IfThenElse(moves, exit, at));
+    if (controls)
+      depth = hn::MulAdd(least, hn::Sub(at, before), depth);
+    else
+      depth = hn::Add(depth, hn::IfThenElse(collides, left, hn::IfThenElseZero(moves, crossed)));
+    left = hn::Sub(left, hn::IfThenElseZero(moves, crossed));
     walked.majorant = hn::IfThenElse(collides, majorant, walked.majorant);
+    if (controls) walked.least = hn::IfThenElse(collides, least, walked.least);
     walked.collided = hn::Or(walked.collided, collides);
     const auto step = [&](VF c, VF where, VF by) {
       return hn::IfThenElse(hn::And(moves, hn::Le(where, exit)), hn::Add(c, by), c);
@@ -145,8 +154,10 @@ class Place {
   Vec3 cells_, chance_;
 };
 
-// `leads`: delta tracking, else ratio tracking. `parts`: extinction differs between wavelengths.
-template <bool leads, bool parts>
+// `leads`: delta tracking, else ratio tracking. `parts`: extinction differs between wavelengths. `controls`, of ratio
+// tracking: what a cell holds at least is taken out exactly (Novak, Selle, Jarosz, "Residual Ratio Tracking for
+// Estimating Attenuation in Participating Media", ACM TOG 33(6), 2014).
+template <bool leads, bool parts, bool controls>
 class Tracker {
  public:
   Tracker(const World& world, uint32_t volume, const VolumeRays& rays, const uint32_t* order, uint32_t count,
@@ -159,13 +170,14 @@ class Tracker {
         live_share_(1 / static_cast<float>(live_wavelengths(world.settings))) {}
 
   void run() {
-    const float* majorants = world_.majorants.data() + volume_.first_majorant;
+    const float* majorants = world_.majorants.data() + 2 * size_t{volume_.first_majorant};
     uint32_t live = queue_.refill((1u << lane_count()) - 1, lanes_);
     while (live != 0) {
-      const Walked walked = walk(majorants, volume_.cells, mask_of(live), lanes_, work_);
+      const Walked walked = walk<controls>(majorants, volume_.cells, mask_of(live), lanes_, work_);
       MF done = walked.left, is_scattered = hn::Ne(walked.majorant, walked.majorant);
       if (leads && parts && !hn::AllFalse(FloatTag(), walked.left)) leave(walked.left);
       if (!hn::AllFalse(FloatTag(), walked.collided)) done = hn::Or(done, collide(walked, &is_scattered));
+      if (controls && !hn::AllFalse(FloatTag(), done)) take_control(done);
       const uint32_t arrived = bits_of(done), ended = bits_of(is_scattered);
       if (arrived == 0) continue;
       for (uint32_t left = arrived; left != 0; left &= left - 1) {
@@ -190,7 +202,7 @@ class Tracker {
     work_.lookups += hn::CountTrue(d, walked.collided);
     MF ends =
         leads ? (parts ? delta_apart(walked.collided, majorant, place, u) : delta(walked.collided, majorant, place, u))
-              : ratio(walked.collided, majorant, place, u);
+              : ratio(walked, majorant, place, u);
     if (leads) *is_scattered = ends;
     const MF too_many = hn::AndNot(ends, hn::And(walked.collided, float_mask(hn::Eq(event, splat_u(most_collisions)))));
     if (!hn::AllFalse(d, too_many)) {
@@ -201,7 +213,7 @@ class Tracker {
     }
     const VF left = divide_or_infinity(exponential(numbers.second), lanes_.get(ray_lead));
     lanes_.set(ray_left, hn::IfThenElse(walked.collided, left, lanes_.get(ray_left)));
-    lanes_.set(ray_depth, hn::IfThenElse(walked.collided, zero, lanes_.get(ray_depth)));
+    if (!controls) lanes_.set(ray_depth, hn::IfThenElse(walked.collided, zero, lanes_.get(ray_depth)));
     lanes_.set_u(ray_event, hn::Add(event, hn::IfThenElseZero(uint_mask(walked.collided), splat_u(1))));
     return ends;
   }
@@ -285,37 +297,57 @@ class Tracker {
     }
   }
 
+  // What the leasts of the cells have let through so far.
+  void control(VF out[4]) const {
+    const VF depth = lanes_.get(ray_depth);
+    for (size_t j = 0; j < 4; ++j)
+      out[j] = j > 0 && !parts ? out[0] : exp(hn::Neg(hn::Mul(lanes_.get(ray_extinction + j), depth)));
+  }
+  void take_control(MF mask) {
+    VF factor[4];
+    control(factor);
+    for (size_t j = 0; j < 4; ++j) {
+      const VF passes = lanes_.get(ray_passes + j);
+      lanes_.set(ray_passes + j, hn::IfThenElse(mask, hn::Mul(passes, factor[j]), passes));
+    }
+  }
+
   // Collisions are drawn for the wavelength that is extinguished most, so each lets every wavelength through by 0 to 1.
   // Rays of which less than a tenth is left on all wavelengths are ended by chance or brought back to a tenth.
-  MF ratio(MF mask, VF majorant, const Place& place, VF u) {
-    const VF one = splat(1.0f), zero = hn::Zero(FloatTag());
-    VF absorption[4], extinction[4];
+  MF ratio(const Walked& walked, VF majorant, const Place& place, VF u) {
+    const VF one = splat(1.0f);
+    VF absorption[4], extinction[4], passes[4];
     const VF inverse = hn::Div(one, hn::Mul(majorant, lanes_.get(ray_lead)));
+    const VF most = controls ? hn::Add(majorant, walked.least) : majorant;
     if (parts) {
-      const Matter matter = place.matter(lanes_, majorant);
+      const Matter matter = place.matter(lanes_, most);
       for (size_t j = 0; j < 4; ++j) absorption[j] = matter.absorption[j], extinction[j] = matter.extinction[j];
     } else {
-      const VF density = hn::Min(place.density(), majorant);
+      const VF density = hn::Min(place.density(), most);
       for (size_t j = 0; j < 4; ++j) {
         absorption[j] = hn::Mul(density, lanes_.get(ray_absorption + j));
         extinction[j] = hn::Mul(density, lanes_.get(ray_extinction + j));
       }
     }
-    VF passes[4];
     for (size_t j = 0; j < 4; ++j) passes[j] = lanes_.get(ray_passes + j);
-    if (volume_.glows && rays_.slots != nullptr) {
+    if (!controls && volume_.glows && rays_.slots != nullptr) {
       VF weight[4];
       for (size_t j = 0; j < 4; ++j) weight[j] = hn::Mul(passes[j], hn::Mul(absorption[j], inverse));
-      gather_glow(mask, place, weight);
+      gather_glow(walked.collided, place, weight);
     }
-    for (size_t j = 0; j < 4; ++j)
-      passes[j] = hn::Mul(passes[j], hn::Max(hn::NegMulAdd(extinction[j], inverse, one), zero));
-    const VF survival = hn::Min(hn::Mul(max_of(passes), splat(10.0f)), one);
-    const MF ends = hn::And(mask, hn::Ge(u, survival));
+    VF carried[4] = {one, one, one, one};
+    if (controls) control(carried);
+    for (size_t j = 0; j < 4; ++j) {
+      if (controls) extinction[j] = hn::NegMulAdd(walked.least, lanes_.get(ray_extinction + j), extinction[j]);
+      passes[j] = hn::Mul(passes[j], clamp(hn::NegMulAdd(extinction[j], inverse, one), 0.0f, 1.0f));
+      carried[j] = hn::Mul(carried[j], passes[j]);
+    }
+    const VF survival = hn::Min(hn::Mul(max_of(carried), splat(10.0f)), one);
+    const MF ends = hn::And(walked.collided, hn::Ge(u, survival));
     const VF gain = hn::IfThenElseZero(hn::Gt(survival, u), hn::Div(one, hn::Max(survival, splat(1e-30f))));
     for (size_t j = 0; j < 4; ++j) {
       const VF before = lanes_.get(ray_passes + j);
-      lanes_.set(ray_passes + j, hn::IfThenElse(mask, hn::Mul(passes[j], gain), before));
+      lanes_.set(ray_passes + j, hn::IfThenElse(walked.collided, hn::Mul(passes[j], gain), before));
     }
     return ends;
   }
@@ -351,10 +383,15 @@ void track_kernel(const World& world, uint32_t volume, const VolumeRays& rays, c
                   GridWork& work) {
   const bool leads = rays.scatters && world.volumes.scatters[volume] != 0;
   const bool parts = !world.grid_volumes[world.volumes.grid[volume]].is_grey;
-  if (leads && parts) return Tracker<true, true>(world, volume, rays, order, count, work).run();
-  if (leads) return Tracker<true, false>(world, volume, rays, order, count, work).run();
-  if (parts) return Tracker<false, true>(world, volume, rays, order, count, work).run();
-  Tracker<false, false>(world, volume, rays, order, count, work).run();
+  const bool glows = world.grid_volumes[world.volumes.grid[volume]].glows && rays.slots != nullptr;
+  const auto run = [&]<bool leading, bool parting, bool controlling>() {
+    Tracker<leading, parting, controlling>(world, volume, rays, order, count, work).run();
+  };
+  if (leads)
+    return parts ? run.template operator()<true, true, false>() : run.template operator()<true, false, false>();
+  if (glows)
+    return parts ? run.template operator()<false, true, false>() : run.template operator()<false, false, false>();
+  parts ? run.template operator()<false, true, true>() : run.template operator()<false, false, true>();
 }
 
 }  // namespace

@@ -52,9 +52,9 @@ Stretch in_box(const GridVolume& grid, const Vector& origin, const Vector& direc
 double majorant_of(const World& world, uint32_t volume, double lambda_nm) {
   const GridVolume& grid = world.grid_volumes[world.volumes.grid[volume]];
   const size_t count = size_t(grid.cells[0]) * size_t(grid.cells[1]) * size_t(grid.cells[2]);
-  const float* first = world.majorants.data() + grid.first_majorant;
+  const float* first = world.majorants.data() + 2 * size_t{grid.first_majorant};
   const double scale = world.volumes.scale[volume];
-  return double{*std::max_element(first, first + count)} * scale *
+  return double{*std::max_element(first, first + 2 * count)} * scale *
          (world.spectra.value(world.volumes.sigma_a[volume], lambda_nm) * double{grid.sigma_a_most} +
           world.spectra.value(world.volumes.sigma_s[volume], lambda_nm) * double{grid.sigma_s_most});
 }

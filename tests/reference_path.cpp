@@ -92,7 +92,8 @@ struct Tracer {
 
   Spectrum4 scattered_in(const Vector& position, const Vector& direction, const ReferenceMedia& media,
                          const Spectrum4& lambda_nm, uint32_t events) {
-    const double g = world.volumes.g[media.volume];
+    const VolumeColumns& table = world.volumes;
+    const reference::PhaseLobes g = {table.g[media.volume], table.g2[media.volume], table.g2_share[media.volume]};
     const ReferenceHit place = place_in_volume(position, direction);
     const ReferenceFrame frame = reference_frame(place, direction);
     const Spectrum4 lit = direct(place, frame, media, lambda_nm, [&](const Direction& wi) {
@@ -101,7 +102,7 @@ struct Tracer {
     });
     BsdfSample next;
     const double u = random(), v = random();
-    next.wi = reference::sample_phase(g, u, v);
+    next.wi = reference::sample_phase(g, random(), u, v);
     next.weight = {1, 1, 1, 1};
     next.pdf = reference::eval_phase(next.wi.z, g);
     return plus(lit, go_on(place, frame, media, next, lambda_nm, false, events));

@@ -49,7 +49,7 @@ struct GridVolume {
   float to_local[12] = {};             // from the world to the medium's own space
   float lower[3] = {}, upper[3] = {};  // there: what is filled
   int32_t cells[3] = {1, 1, 1};
-  uint32_t first_majorant = 0;  // into World::majorants
+  uint32_t first_majorant = 0;  // its first cell in World::majorants
   GridUse density, sigma_a, sigma_s, emission, temperature;
   float sigma_a_most = 1, sigma_s_most = 1;  // greatest factors of the grids of that name
   float temperature_offset = 0, temperature_scale = 1;

@@ -127,7 +127,7 @@ inline constexpr uint32_t media_stack_size = 4, largest_medium = 0xffff;
 struct VolumeColumns {
   Column<uint32_t> sigma_a, sigma_s;  // SpectrumId, per metre, times `scale`
   Column<uint32_t> emission;          // SpectrumId, W m^-2 sr^-1 nm^-1, times `emission_scale`
-  Column<float> scale, emission_scale, g;
+  Column<float> scale, emission_scale, g, g2, g2_share;
   Column<uint32_t> scatters;  // 0: rays go straight through, whatever is absorbed on the way
   Column<uint32_t> grid;      // row of World::grid_volumes: the coefficients are multiplied by grids; no_index: they hold
 };
@@ -286,7 +286,7 @@ struct World {
   uint32_t camera_volume = 0;  // the row of volumes that paths start in
   GridColumns grids;
   std::vector<GridVolume> grid_volumes;
-  Column<float> majorants;  // of their cells, x fastest
+  Column<float> majorants;  // two per cell, x fastest: the majorant, and what is there at least in the same unit
   // In the modes of coefficients: three for blackbodies of unit peak, blackbody_steps times from blackbody_coldest to
   // blackbody_hottest, evenly in the temperature's logarithm. Empty where no grid holds temperatures.
   Column<float> blackbody_coefficients;

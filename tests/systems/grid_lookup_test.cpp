@@ -100,16 +100,18 @@ TEST(GridLookup, TakesOneVoxelWithTrilinearChance) {
   EXPECT_NEAR(sum / (n * n * n), kernel_trilinear(frozen.world.grids, frozen.columns(), p)[0], 1e-4);
 }
 
-TEST(GridLookup, NeverExceedsTheGreatestValueThatIsKnown) {
+TEST(GridLookup, StaysWithinTheKnownRange) {
   const Frozen frozen(scattered_grid(3, 0.1f));
   std::mt19937 random(9);
   for (const glm::vec3& p : places(frozen.scene.grids[0], 2000)) {
     if (glm::any(glm::greaterThan(glm::abs(p), glm::vec3(1000)))) continue;
     const glm::ivec3 at(glm::floor(p));
     const int reach = int(random() % 12);
-    const float most = frozen.grids.greatest(frozen.row, at - reach, at + reach / 2);
-    for (const double value : kernel_trilinear(frozen.world.grids, frozen.columns(), p))
-      ASSERT_LE(value, double{most} * (1 + 1e-6));
+    const ValueRange range = frozen.grids.range(frozen.row, at - reach, at + reach / 2);
+    for (const double value : kernel_trilinear(frozen.world.grids, frozen.columns(), p)) {
+      ASSERT_LE(value, double{range.greatest} * (1 + 1e-6));
+      ASSERT_GE(value, double{range.least} * (1 - 1e-6));
+    }
   }
 }
 
