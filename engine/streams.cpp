@@ -23,7 +23,8 @@ void for_each_column(ShadeStream& s, const Visit& visit) {
 
 template <class Visit>
 void for_each_column(ShadowStream& s, const Visit& visit) {
-  visit_columns(visit, s.origin, s.direction, s.t_far, s.contribution, s.slot, s.lambda_nm, s.volume, s.time);
+  visit_columns(visit, s.origin, s.direction, s.t_far, s.contribution, s.slot, s.lambda_nm, s.volume, s.time,
+                s.pixel_seed, s.index);
 }
 
 template <class Visit>

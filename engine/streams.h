@@ -3,7 +3,7 @@
 // until the batch is accumulated.
 //
 // Per path: PathStream 112 bytes, twice (this bounce's and the next one's rays); HitStream 32; ShadeStream 340;
-// ShadowStream 72; Slots 60. Columns that a scene has no use for are not touched.
+// ShadowStream 80; Slots 60. Columns that a scene has no use for are not touched.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -167,6 +167,7 @@ struct ShadeStream {
   Columns<float, 2> alpha;       // GGX widths along and across the tangent
   Columns<uint32_t, 2> volumes;  // on the inside and the outside of the surface, where `carries_volumes`
   bool carries_volumes = false;
+  bool carries_keys = false;  // shadow rays take the keys of their paths along
   Columns<float, 4> share;  // where `carries_shares`; kernels of what light enters know when a wavelength is alone
   bool carries_shares = false;
   // Writer: light_sample. Lanes without a light sample have radiance 0.
@@ -194,6 +195,7 @@ struct ShadowStream {
   Columns<float, 4> lambda_nm;  // this and the volume that the ray starts in: only where the shading carries volumes
   uint32_t* volume;
   float* time;  // where World::has_motion
+  uint32_t *pixel_seed, *index;  // of the path, where World::has_grids
 };
 
 // What a path, or one node of a ray tree, gathers, by its place in the batch.

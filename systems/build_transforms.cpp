@@ -81,6 +81,7 @@ std::vector<glm::dmat4> build_transforms(const Scene& scene, Diagnostics& diagno
   registry.each<Light>([&](Entity entity, uint32_t) {
     if (!registry.has<Geometry>(entity)) add(entity);
   });
+  registry.each<MediumGrid>([&](Entity entity, uint32_t) { add(entity); });
   registry.each<Camera>([&](Entity entity, uint32_t) { add(entity); });
   return std::move(matrices.to_world);
 }

@@ -1,3 +1,5 @@
+#include "systems/build_volumes.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,8 +23,10 @@ bool check_medium(const Scene& scene, Entity entity, const Medium& medium, const
   if (!is_amount(medium.scale)) error(fmt::format("its scale is {}; expected a number of at least 0", medium.scale));
   if (!is_amount(medium.emission_scale))
     error(fmt::format("the scale of its emission is {}; expected a number of at least 0", medium.emission_scale));
-  if (!(medium.g > -1 && medium.g < 1))
-    error(fmt::format("its g is {}; expected a number between -1 and 1, both excluded", medium.g));
+  for (const float g : {medium.g, medium.g2})
+    if (!(g > -1 && g < 1)) error(fmt::format("its g is {}; expected a number between -1 and 1, both excluded", g));
+  if (!(medium.g2_share >= 0 && medium.g2_share <= 1))
+    error(fmt::format("the share of its second lobe is {}; expected a number from 0 to 1", medium.g2_share));
   const std::pair<SpectrumId, const char*> spectra[] = {
       {medium.sigma_a, "sigma_a"}, {medium.sigma_s, "sigma_s"}, {medium.emission, "emission"}};
   for (const auto& [id, name] : spectra)
@@ -44,7 +48,7 @@ bool is_chromatic(const Medium& medium, const World& world) {
   return most - least > same_extinction * most;
 }
 
-uint32_t add_volume(const Medium& medium, World& world) {
+uint32_t add_volume(const Medium& medium, uint32_t grid, World& world) {
   VolumeColumns& table = world.volumes;
   const bool scatters = medium.scale > 0 && world.spectra.max_value(medium.sigma_s) > 0;
   table.sigma_a.push_back(medium.sigma_a);
@@ -53,8 +57,17 @@ uint32_t add_volume(const Medium& medium, World& world) {
   table.scale.push_back(medium.scale);
   table.emission_scale.push_back(medium.emission_scale);
   table.g.push_back(medium.g);
+  table.g2.push_back(medium.g2);
+  table.g2_share.push_back(medium.g2_share);
   table.scatters.push_back(scatters);
-  if (scatters && is_chromatic(medium, world)) world.shares_paths = true;
+  table.grid.push_back(grid);
+  bool parts = is_chromatic(medium, world);
+  if (grid != no_index) {
+    GridVolume& row = world.grid_volumes[grid];
+    parts = parts || row.sigma_a.is_used() || row.sigma_s.is_used();
+    row.is_grey = !parts;
+  }
+  if (scatters && parts) world.shares_paths = true;
   return static_cast<uint32_t>(table.scale.size() - 1);
 }
 
@@ -87,16 +100,24 @@ Medium homogeneous_medium(const Scene& scene, Entity entity, SpectrumSet& spectr
   return medium;
 }
 
-std::vector<VolumeSides> build_volumes(const Scene& scene, World& world, Diagnostics& diagnostics) {
+std::vector<VolumeSides> build_volumes(const Scene& scene, std::span<const glm::dmat4> to_world, World& world,
+                                       Diagnostics& diagnostics) {
   const Registry& registry = scene.registry;
+  GridVolumeBuilder grids(scene, world, diagnostics);
   Medium empty;
   empty.scale = empty.emission_scale = 0;
-  add_volume(empty, world);
+  add_volume(empty, no_index, world);
   std::vector<uint32_t> rows;
   registry.each<Medium>([&](Entity entity, uint32_t) {
     if (entity.index >= rows.size()) rows.resize(entity.index + 1);
-    const Medium medium = homogeneous_medium(scene, entity, world.spectra, diagnostics);
-    if (check_medium(scene, entity, medium, world.spectra, diagnostics)) rows[entity.index] = add_volume(medium, world);
+    const Medium medium = registry.get<Medium>(entity);
+    if (!check_medium(scene, entity, medium, world.spectra, diagnostics)) return;
+    uint32_t grid = no_index;
+    if (registry.has<MediumGrid>(entity)) {
+      grid = grids.add(entity, medium, to_world[entity.index]);
+      if (grid == no_index) return;
+    }
+    rows[entity.index] = add_volume(medium, grid, world);
   });
   const auto row_of = [&](Entity owner, Entity medium) {
     if (medium.is_null()) return 0u;

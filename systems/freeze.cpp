@@ -34,7 +34,8 @@ std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics&
   const std::vector<glm::dmat4> to_world = build_transforms(scene, diagnostics);
   build_textures(scene, *world, diagnostics);
   const std::vector<MaterialRow> materials = build_materials(scene, *world, diagnostics);
-  const std::vector<VolumeSides> volumes = build_volumes(scene, *world, diagnostics);
+  const std::vector<VolumeSides> volumes = build_volumes(scene, to_world, *world, diagnostics);
+  if (disposable != nullptr) std::vector<Grid>().swap(disposable->grids);
   build_geometry(scene, to_world, materials, volumes, *world, diagnostics);
   if (disposable != nullptr) std::vector<Mesh>().swap(disposable->meshes);
   build_lights(scene, to_world, *world, diagnostics);

@@ -41,7 +41,8 @@ struct VolumeSides {
 };
 // The media that fill space, their places by entity index, and what the camera is in. Errors: negative or infinite
 // coefficients, g not between -1 and 1, a slot that names an entity without Medium.
-std::vector<VolumeSides> build_volumes(const Scene& scene, World& world, Diagnostics& diagnostics);
+std::vector<VolumeSides> build_volumes(const Scene& scene, std::span<const glm::dmat4> to_world, World& world,
+                                       Diagnostics& diagnostics);
 
 // The alpha of the last object. A constant one of 0 is not there for any ray, one of 1 is no mask.
 void build_mask(TextureId texture, World& world);

@@ -49,8 +49,8 @@ void find_surfaces(const World& world, uint32_t depth, Batch& batch, StageClock&
   clock.charge(SystemId::intersect);
   ShadeStream& shade = batch.shade;
   if (world.has_volumes)
-    counters.lost_rays +=
-        volumes(world, depth, paths, batch.hits, batch.order, shade, batch.slots, &counters.embree_seconds);
+    counters.lost_rays += volumes(world, depth, paths, batch.hits, batch.order, shade, batch.slots, counters.grids,
+                                  &counters.embree_seconds);
   clock.charge(SystemId::volumes);
   sort_hits(world, depth, paths, batch.hits, batch.order, shade.groups);
   shade.size = shade.groups.back().padded_end();
@@ -72,8 +72,9 @@ void meet(const World& world, uint32_t depth, Batch& batch, StageClock& clock, C
   clock.charge(SystemId::emission);
 }
 
-// Light on rough surfaces by the light samples that are in the stream.
-void weigh_lights(const World& world, const ShadeWork& work, Batch& batch, StageClock& clock, Counters& counters) {
+// Light on rough surfaces by the light samples that are in the stream: the n-th ones of each vertex.
+void weigh_lights(const World& world, const ShadeWork& work, uint32_t n, Batch& batch, StageClock& clock,
+                  Counters& counters) {
   batch.shadow.size = 0;
   limit_light(world, work.depth + 1, batch.slots);
   shade_rough_kinds(world, work, batch.shade, batch.shadow);
@@ -81,7 +82,8 @@ void weigh_lights(const World& world, const ShadeWork& work, Batch& batch, Stage
   if (world.has_volumes) {
     if (!batch.crossings) batch.crossings = std::make_unique<Batch>();
     occlude(world, batch.shadow, &counters.embree_seconds);
-    counters.lost_rays += transmit(world, batch.shadow, *batch.crossings, &counters.embree_seconds);
+    counters.lost_rays +=
+        transmit(world, work.depth, n, batch.shadow, *batch.crossings, counters.grids, &counters.embree_seconds);
     add_light(batch.shadow, batch.slots);
   } else {
     shadow(world, batch.shadow, batch.slots, &counters.embree_seconds);
@@ -96,13 +98,13 @@ void gather_direct_light(const World& world, uint32_t depth, Batch& batch, Stage
   for (const uint32_t row : world.summed_lights) {
     light_towards(world, row, batch.shade);
     clock.charge(SystemId::light_sample);
-    weigh_lights(world, {depth, true, false, false}, batch, clock, counters);
+    weigh_lights(world, {depth, true, false, false}, row + 1, batch, clock, counters);
   }
   if (world.light_choice.size() == 0) return;
   light_sample(world, depth, batch.shade);
   clock.charge(SystemId::light_sample);
   const bool probes = world.settings.shadows;
-  weigh_lights(world, {depth, true, probes, false}, batch, clock, counters);
+  weigh_lights(world, {depth, true, probes, false}, 0, batch, clock, counters);
   if (!probes) return;
   probe_rays(batch.shade, batch.next);
   std::swap(batch.paths, batch.next);
@@ -144,7 +146,7 @@ void trace_vertices(const World& world, uint32_t depth, bool last, Batch& batch,
   const bool has_lights = world.light_choice.size() > 0;
   if (has_lights) light_sample(world, depth, shade);
   clock.charge(SystemId::light_sample);
-  weigh_lights(world, {depth, has_lights, true}, batch, clock, counters);
+  weigh_lights(world, {depth, has_lights, true}, 0, batch, clock, counters);
   shade_smooth_conductor(world, shade);
   shade_dielectric(world, depth, Branch::drawn, shade);
   shade_thin_dielectric(world, depth, Branch::drawn, shade);
@@ -243,6 +245,9 @@ void Counters::add(const Counters& other) {
   invalid_samples += other.invalid_samples;
   lost_media += other.lost_media;
   lost_rays += other.lost_rays;
+  grids.lookups += other.grids.lookups;
+  grids.steps += other.grids.steps;
+  grids.unfinished += other.grids.unfinished;
 }
 
 void trace_tile(const World& world, const TileRect& tile, uint32_t sample_begin, uint32_t sample_end, Batch& batch,

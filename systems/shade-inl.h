@@ -86,6 +86,10 @@ HWY_INLINE void append_weighted_shadow_rays(const ShadeStream& shade, size_t i, 
     append(counts, lambda_nm, shadow.lambda_nm, shadow.size);
     append(counts, volume_towards(shade, i, direction), shadow.volume, shadow.size);
   }
+  if (shade.carries_keys) {
+    append(counts, load(shade.pixel_seed, i), shadow.pixel_seed, shadow.size);
+    append(counts, load(shade.index, i), shadow.index, shadow.size);
+  }
   if (shade.carries_time) append(counts, load(shade.time, i), shadow.time, shadow.size);
   shadow.size += static_cast<uint32_t>(hn::CountTrue(FloatTag(), counts));
 }

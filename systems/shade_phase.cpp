@@ -14,18 +14,22 @@ void shade_phase_kernel(const World& world, const ShadeWork& work, ShadeStream& 
   const VF unit[4] = {one, one, one, one};
   const Group& group = group_of(shade, ShadeKind::phase);
   for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
-    const VF g = gather(world.volumes.g.data(), material_row(shade, i));
+    const VI row = material_row(shade, i);
+    const VolumeColumns& table = world.volumes;
+    const PhaseLobes lobes = {gather(table.g.data(), row), gather(table.g2.data(), row),
+                              gather(table.g2_share.data(), row)};
     const Vec3 onward = -load(shade.wo, i);
     if (work.weigh_light) {
-      const VF p = eval_phase(clamp(dot(onward, load(shade.light_direction, i)), -1.0f, 1.0f), g);
+      const VF p = eval_phase(clamp(dot(onward, load(shade.light_direction, i)), -1.0f, 1.0f), lobes);
       const VF f[4] = {p, p, p, p};
       append_shadow_rays(shade, i, f, p, shadow);
     }
     if (!work.draw_next) continue;
     VF u, v;
+    const VF choice = sample_1d(point_key(shade, i), splat_u(bounce_dimension(work.depth, lobe_dimension)));
     sample_2d(point_key(shade, i), splat_u(bounce_dimension(work.depth, direction_dimension)), &u, &v);
-    const Vec3 next = sample_phase(g, u, v);
-    store_next(make_frame(onward), next, unit, eval_phase(next.z, g), shade, i);
+    const Vec3 next = sample_phase(lobes, choice, u, v);
+    store_next(make_frame(onward), next, unit, eval_phase(next.z, lobes), shade, i);
     store(one, shade.next_eta_scale, i);
   }
 }

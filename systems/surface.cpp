@@ -238,6 +238,7 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
   shade.carries_media = world.has_interiors;
   shade.carries_volumes = world.has_volumes;
   shade.carries_shares = world.shares_paths;
+  shade.carries_keys = world.has_grids;
   const Group& phase = shade.groups[static_cast<size_t>(ShadeKind::phase)];
   shade.carries_time = world.has_motion;
   const uint32_t miss_begin = shade.groups[static_cast<size_t>(ShadeKind::miss)].begin;

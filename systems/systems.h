@@ -34,6 +34,14 @@ enum class SystemId : uint32_t {
   accumulate
 };
 inline constexpr size_t system_count = 13;
+// What rays through volumes of grids came to. One that collides more often with what is there, or might be, is given
+// up.
+inline constexpr uint32_t most_collisions = 1u << 20;
+struct GridWork {
+  uint64_t lookups = 0;     // collisions, real or not: places where the grids were asked
+  uint64_t steps = 0;       // cells of majorants
+  uint64_t unfinished = 0;  // rays that collided most_collisions times and were given up
+};
 struct Counters {
   double seconds[system_count] = {};
   double embree_seconds = 0;
@@ -42,6 +50,7 @@ struct Counters {
   uint64_t invalid_samples = 0;
   uint64_t lost_media = 0;  // times that a path was inside of more than it can remember
   uint64_t lost_rays = 0;   // rays that met more interfaces than they may
+  GridWork grids;
   void add(const Counters& other);
 };
 
@@ -65,7 +74,7 @@ void intersect_onward(const World& world, const PathStream& paths, const uint32_
 inline constexpr uint32_t most_interfaces = 1024;
 inline constexpr float light_is_counted = -1;  // HitStream::depth_left: `emission` has seen the shape that was hit
 uint32_t volumes(const World& world, uint32_t depth, PathStream& paths, HitStream& hits, uint32_t* order,
-                 ShadeStream& shade, Slots& slots, double* embree_seconds);
+                 ShadeStream& shade, Slots& slots, GridWork& work, double* embree_seconds);
 
 // Chooses the material of hits on mixed ones and sorts by kind: order[lane] is the path, dead_lane in the padding
 // between groups. Writes the hits' material.
@@ -157,9 +166,11 @@ void shadow(const World& world, const ShadowStream& shadow, Slots& slots, double
 // their slot, then the contributions of the others are added.
 void occlude(const World& world, ShadowStream& shadow, double* embree_seconds);
 void add_light(const ShadowStream& shadow, Slots& slots);
-// What volumes between a vertex and its light let through, interface by interface. `crossings` is scratch. Returns the
-// number of rays that met more than most_interfaces and bring nothing.
-uint32_t transmit(const World& world, ShadowStream& shadow, Batch& crossings, double* embree_seconds);
+// What volumes between a vertex and its light let through, interface by interface. `depth` and `light` tell the light
+// samples of a path from each other. `crossings` is scratch. Returns the number of rays that met more than
+// most_interfaces and bring nothing.
+uint32_t transmit(const World& world, uint32_t depth, uint32_t light, ShadowStream& shadow, Batch& crossings,
+                  GridWork& work, double* embree_seconds);
 
 // Ends paths that carry little, without bias, and makes the rays of the others.
 void roulette(uint32_t depth, const ShadeStream& shade, PathStream& next);

@@ -6,26 +6,8 @@
 // Highway's headers come after foreach_target.
 #include "engine/sampling/points-inl.h"
 #include "systems/dimensions.h"
+#include "systems/grid_track.h"
 #include "systems/volumes-inl.h"
-
-#ifndef METAMER_SYSTEMS_VOLUME_RAYS_
-#define METAMER_SYSTEMS_VOLUME_RAYS_
-namespace metamer {
-namespace {
-
-// One kind of rays on their way, and what may happen to them.
-struct VolumeRays {
-  PathStream& paths;
-  HitStream& hits;
-  Slots* slots;     // where the glow goes; null: it does not count
-  bool scatters;    // rays are scattered by chance; else what is scattered is lost
-  uint32_t* order;  // rows of the streams, padded with dead_lane to whole vectors
-  uint32_t count = 0;
-};
-
-}  // namespace
-}  // namespace metamer
-#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
@@ -142,6 +124,10 @@ void cross_kernel(const ShadeStream& shade, const VolumeRays& rays) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include <algorithm>
+
+#include "engine/sampling/hash.h"
+
 namespace metamer {
 
 HWY_EXPORT(start_kernel);
@@ -192,8 +178,9 @@ class DimmedLights {
     for (uint32_t k = 0; k < rays.count; ++k) {
       const uint32_t path = rays.order[k], object = rays.hits.object[path];
       const bool shines = object < scattered && world.objects.first_light[object] != no_index;
-      const bool stays = shines && !is_kind(world, object, ShadeKind::interface);
-      if (stays && world.volumes.scatters[rays.paths.volume[path]] != 0) order_[count_++] = path;
+      if (!shines || is_kind(world, object, ShadeKind::interface)) continue;
+      const uint32_t volume = rays.paths.volume[path];
+      if (world.volumes.scatters[volume] != 0 && world.volumes.grid[volume] == no_index) order_[count_++] = path;
     }
     std::fill(order_ + count_, order_ + padded_to_lanes(count_), dead_lane);
   }
@@ -214,14 +201,44 @@ class DimmedLights {
   uint32_t order_[batch_capacity + column_lanes], count_ = 0;
 };
 
+// A stretch of the listed rays: those in homogeneous volumes, then those in each volume of grids.
+void stretch(const World& world, const VolumeRays& rays, GridWork& work) {
+  if (!world.has_grids) return HWY_DYNAMIC_DISPATCH(stretch_kernel)(world, rays);
+  uint32_t homogeneous[batch_capacity + column_lanes], listed[batch_capacity + column_lanes];
+  std::pair<uint32_t, uint32_t> in_grids[batch_capacity];  // volume and row
+  VolumeRays others = rays;
+  others.order = homogeneous;
+  others.count = 0;
+  uint32_t count = 0;
+  for (uint32_t k = 0; k < rays.count; ++k) {
+    const uint32_t row = rays.order[k], volume = rays.paths.volume[row];
+    if (world.volumes.grid[volume] == no_index)
+      homogeneous[others.count++] = row;
+    else
+      in_grids[count++] = {volume, row};
+  }
+  std::fill(homogeneous + others.count, homogeneous + padded_to_lanes(others.count), dead_lane);
+  HWY_DYNAMIC_DISPATCH(stretch_kernel)(world, others);
+  std::sort(in_grids, in_grids + count);
+  for (uint32_t begin = 0, end = 0; begin < count; begin = end) {
+    uint32_t size = 0;
+    for (; end < count && in_grids[end].first == in_grids[begin].first; ++end) listed[size++] = in_grids[end].second;
+    std::fill(listed + size, listed + padded_to_lanes(size), dead_lane);
+    track_grid(world, in_grids[begin].first, rays, listed, size, work);
+  }
+}
+
 // The listed rays up to what they meet, on through all interfaces. `mask`: what they see. Returns how many are given
 // up.
-uint32_t follow(const World& world, uint32_t mask, VolumeRays& rays, ShadeStream& shade, double* embree_seconds) {
+uint32_t follow(const World& world, uint32_t mask, VolumeRays& rays, ShadeStream& shade, GridWork& work,
+                double* embree_seconds) {
+  const uint32_t key = rays.key;
   const auto is_at_interface = [&](uint32_t i) { return is_kind(world, rays.hits.object[i], ShadeKind::interface); };
   for (uint32_t passed = 0;; ++passed) {
     const DimmedLights lights(world, rays);
     lights.add(world, rays, shade);
-    HWY_DYNAMIC_DISPATCH(stretch_kernel)(world, rays);
+    rays.key = hash_combine(key, passed);
+    stretch(world, rays, work);
     lights.mark(rays.hits);
     keep(rays, is_at_interface);
     if (rays.count == 0) return 0;
@@ -241,17 +258,20 @@ uint32_t follow(const World& world, uint32_t mask, VolumeRays& rays, ShadeStream
 }  // namespace
 
 uint32_t volumes(const World& world, uint32_t depth, PathStream& paths, HitStream& hits, uint32_t* order,
-                 ShadeStream& shade, Slots& slots, double* embree_seconds) {
+                 ShadeStream& shade, Slots& slots, GridWork& work, double* embree_seconds) {
   VolumeRays rays{paths, hits, &slots, world.settings.integrator == Integrator::path, order};
+  rays.key = hash_combine(depth, 0);
   HWY_DYNAMIC_DISPATCH(start_kernel)(depth, paths, hits);
   list_all(paths.size, rays);
-  return follow(world, depth == 0 ? visible_to_camera : visible_to_bounces, rays, shade, embree_seconds);
+  return follow(world, depth == 0 ? visible_to_camera : visible_to_bounces, rays, shade, work, embree_seconds);
 }
 
-uint32_t transmit(const World& world, ShadowStream& shadow, Batch& crossings, double* embree_seconds) {
+uint32_t transmit(const World& world, uint32_t depth, uint32_t light, ShadowStream& shadow, Batch& crossings,
+                  GridWork& work, double* embree_seconds) {
   PathStream& paths = crossings.paths;
   HitStream& hits = crossings.hits;
   VolumeRays rays{paths, hits, nullptr, false, crossings.order};
+  rays.key = hash_combine(hash_combine(depth, 1), light);
   const auto copy = [&](const auto& from, auto& to) {
     for (size_t c = 0; c < from.size(); ++c) std::copy_n(from[c], shadow.size, to[c]);
   };
@@ -261,6 +281,10 @@ uint32_t transmit(const World& world, ShadowStream& shadow, Batch& crossings, do
   copy(shadow.contribution, paths.throughput);
   std::copy_n(shadow.volume, shadow.size, paths.volume);
   if (world.has_motion) std::copy_n(shadow.time, shadow.size, paths.time);
+  if (world.has_grids) {
+    std::copy_n(shadow.pixel_seed, shadow.size, paths.pixel_seed);
+    std::copy_n(shadow.index, shadow.size, paths.index);
+  }
   paths.size = shadow.size;
   for (uint32_t i = 0; i < shadow.size; ++i) {
     hits.passed[i] = 0;
@@ -271,7 +295,7 @@ uint32_t transmit(const World& world, ShadowStream& shadow, Batch& crossings, do
   keep(rays, [&](uint32_t i) { return shadow.slot[i] != dead_lane; });
   if (world.has_interfaces)
     intersect_onward(world, paths, rays.order, rays.count, visible_to_crossings, hits, embree_seconds);
-  const uint32_t lost = follow(world, visible_to_crossings, rays, crossings.shade, embree_seconds);
+  const uint32_t lost = follow(world, visible_to_crossings, rays, crossings.shade, work, embree_seconds);
   copy(paths.throughput, shadow.contribution);
   return lost;
 }

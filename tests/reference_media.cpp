@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "tests/reference_grids.h"
+
 namespace metamer {
 
 uint32_t fills(const World& world, const ReferenceMedia& media) {
@@ -42,18 +44,28 @@ uint32_t volume_towards(const World& world, const ReferenceMedia& media, const R
   return outwards ? world.objects.volume_outside[hit.object] : world.objects.volume_inside[hit.object];
 }
 
-ReferenceVolume volume_at(const World& world, uint32_t volume, double lambda_nm) {
+ReferenceVolume volume_at(const World& world, uint32_t volume, const Vector& position, double lambda_nm) {
   const VolumeColumns& table = world.volumes;
   const double scale = table.scale[volume];
-  return {scale * world.spectra.value(table.sigma_a[volume], lambda_nm),
-          scale * world.spectra.value(table.sigma_s[volume], lambda_nm),
-          double{table.emission_scale[volume]} * world.spectra.value(table.emission[volume], lambda_nm)};
+  ReferenceVolume there{scale * world.spectra.value(table.sigma_a[volume], lambda_nm),
+                        scale * world.spectra.value(table.sigma_s[volume], lambda_nm),
+                        double{table.emission_scale[volume]} * world.spectra.value(table.emission[volume], lambda_nm)};
+  if (table.grid[volume] != no_index) vary(world, volume, position, lambda_nm, there);
+  return there;
 }
 
-void attenuate_and_glow(const World& world, uint32_t row, const reference::Spectrum4& lambda_nm, double distance,
+void attenuate_and_glow(const World& world, uint32_t row, const Vector& origin, const Vector& direction,
+                        const reference::Spectrum4& lambda_nm, double distance, ReferenceRandom& random,
                         reference::Spectrum4& light) {
   for (size_t j = 0; j < 4; ++j) {
-    const ReferenceVolume volume = volume_at(world, row, lambda_nm[j]);
+    if (world.volumes.grid[row] != no_index) {
+      const double t = reference_free_path(world, row, origin, direction, distance, lambda_nm[j], random);
+      if (std::isinf(t)) continue;
+      const ReferenceVolume volume = volume_at(world, row, origin + t * direction, lambda_nm[j]);
+      light[j] = volume.glow * volume.absorption / volume.extinction();
+      continue;
+    }
+    const ReferenceVolume volume = volume_at(world, row, origin, lambda_nm[j]);
     if (!(volume.extinction() > 0)) continue;
     const double passes = std::exp(-volume.extinction() * distance);
     light[j] = light[j] * passes + volume.glow * volume.absorption / volume.extinction() * (1 - passes);
@@ -70,8 +82,8 @@ ReferenceHit place_in_volume(const Vector& position, const Vector& direction) {
 
 reference::Spectrum4 volume_transmittance(const ReferenceScene& scene, uint32_t volume, const Vector& origin,
                                           const Vector& direction, double distance,
-                                          const reference::Spectrum4& lambda_nm) {
-  reference::Spectrum4 depth{}, passes;
+                                          const reference::Spectrum4& lambda_nm, ReferenceRandom& random) {
+  reference::Spectrum4 passes{1, 1, 1, 1};
   ReferenceMedia media;
   media.volume = volume;
   Vector from = origin;
@@ -79,15 +91,18 @@ reference::Spectrum4 volume_transmittance(const ReferenceScene& scene, uint32_t 
     const ReferenceHit hit = scene.intersect(from, direction, visible_to_crossings, left);
     const double stretch = hit.object == no_index ? left : hit.t;
     for (size_t j = 0; j < 4; ++j) {
-      const double extinction = volume_at(scene.world, media.volume, lambda_nm[j]).extinction();
-      if (extinction > 0) depth[j] += extinction * stretch;
+      if (scene.world.volumes.grid[media.volume] != no_index) {
+        passes[j] *= reference_ratio(scene.world, media.volume, from, direction, stretch, lambda_nm[j], random);
+        continue;
+      }
+      const double extinction = volume_at(scene.world, media.volume, from, lambda_nm[j]).extinction();
+      if (extinction > 0) passes[j] *= std::exp(-extinction * stretch);
     }
     if (hit.object == no_index) break;
     media.volume = volume_towards(scene.world, media, hit, direction);
     from = hit.position;
     left -= hit.t;
   }
-  for (size_t j = 0; j < 4; ++j) passes[j] = std::exp(-depth[j]);
   return passes;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "systems/bsdf/reference.h"
+#include "tests/reference_lights.h"
 #include "tests/reference_scene.h"
 
 namespace metamer {
@@ -27,16 +28,20 @@ struct ReferenceVolume {
   double absorption = 0, scattering = 0, glow = 0;
   double extinction() const { return absorption + scattering; }
 };
-ReferenceVolume volume_at(const World& world, uint32_t volume, double lambda_nm);
-// Light that went that far through a volume: less what is absorbed and scattered, more what glows.
-void attenuate_and_glow(const World& world, uint32_t volume, const reference::Spectrum4& lambda_nm, double distance,
+ReferenceVolume volume_at(const World& world, uint32_t volume, const Vector& position, double lambda_nm);
+// Light that comes against `direction` from so far away: less what is absorbed and scattered, more what glows. In a
+// volume of grids by chance.
+void attenuate_and_glow(const World& world, uint32_t volume, const Vector& origin, const Vector& direction,
+                        const reference::Spectrum4& lambda_nm, double distance, ReferenceRandom& random,
                         reference::Spectrum4& light);
+// What grids make of `there`, the volume without them; see reference_grids.h.
+void vary(const World& world, uint32_t volume, const Vector& position, double lambda_nm, ReferenceVolume& there);
 // A point without a surface; its local z axis is the direction of going on unscattered.
 ReferenceHit place_in_volume(const Vector& position, const Vector& direction);
 // What volumes let through between a point and another so many metres away, through all interfaces.
 reference::Spectrum4 volume_transmittance(const ReferenceScene& scene, uint32_t volume, const Vector& origin,
                                           const Vector& direction, double distance,
-                                          const reference::Spectrum4& lambda_nm);
+                                          const reference::Spectrum4& lambda_nm, ReferenceRandom& random);
 // What rays start in at the camera.
 ReferenceMedia camera_media(const World& world);
 // Light that went that far, in metres, through what fills the space.

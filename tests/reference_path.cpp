@@ -10,6 +10,7 @@
 #include "systems/bsdf/limits.h"
 #include "systems/bsdf/reference.h"
 #include "tests/reference_camera.h"
+#include "tests/reference_grids.h"
 #include "tests/reference_lights.h"
 #include "tests/reference_media.h"
 #include "tests/reference_optics.h"
@@ -59,7 +60,7 @@ struct Tracer {
     Spectrum4 result{};
     if (!is_path || world.volumes.scatters[media.volume] == 0) {
       result = arriving(hit, origin, direction, media, lambda_nm, together, events, sees_lights, sees_sky, mask);
-      attenuate_and_glow(world, media.volume, lambda_nm, distance, result);
+      attenuate_and_glow(world, media.volume, origin, direction, lambda_nm, distance, random, result);
       return result;
     }
     for (size_t j = 0; j < 4; ++j) {
@@ -69,8 +70,14 @@ struct Tracer {
       }
       Spectrum4 alone;
       alone.fill(lambda_nm[j]);
-      const ReferenceVolume volume = volume_at(world, media.volume, lambda_nm[j]);
-      const double t = volume.extinction() > 0 ? -std::log(1 - random()) / volume.extinction() : infinity;
+      ReferenceVolume volume = volume_at(world, media.volume, origin, lambda_nm[j]);
+      double t = infinity;
+      if (world.volumes.grid[media.volume] != no_index) {
+        t = reference_free_path(world, media.volume, origin, direction, distance, lambda_nm[j], random);
+        if (t < distance) volume = volume_at(world, media.volume, origin + t * direction, lambda_nm[j]);
+      } else if (volume.extinction() > 0) {
+        t = -std::log(1 - random()) / volume.extinction();
+      }
       if (!(t < distance)) {
         result[j] = arriving(hit, origin, direction, media, alone, false, events, sees_lights, sees_sky, mask)[0];
         continue;
@@ -85,7 +92,8 @@ struct Tracer {
 
   Spectrum4 scattered_in(const Vector& position, const Vector& direction, const ReferenceMedia& media,
                          const Spectrum4& lambda_nm, uint32_t events) {
-    const double g = world.volumes.g[media.volume];
+    const VolumeColumns& table = world.volumes;
+    const reference::PhaseLobes g = {table.g[media.volume], table.g2[media.volume], table.g2_share[media.volume]};
     const ReferenceHit place = place_in_volume(position, direction);
     const ReferenceFrame frame = reference_frame(place, direction);
     const Spectrum4 lit = direct(place, frame, media, lambda_nm, [&](const Direction& wi) {
@@ -94,7 +102,7 @@ struct Tracer {
     });
     BsdfSample next;
     const double u = random(), v = random();
-    next.wi = reference::sample_phase(g, u, v);
+    next.wi = reference::sample_phase(g, random(), u, v);
     next.weight = {1, 1, 1, 1};
     next.pdf = reference::eval_phase(next.wi.z, g);
     return plus(lit, go_on(place, frame, media, next, lambda_nm, false, events));
@@ -278,9 +286,9 @@ struct Tracer {
   }
 
   void through_media(const ReferenceMedia& media, const Vector& from, const Vector& direction, double distance,
-                     const Spectrum4& lambda_nm, Spectrum4& light) const {
+                     const Spectrum4& lambda_nm, Spectrum4& light) {
     attenuate(world, media, lambda_nm, distance, light);
-    const Spectrum4 passes = volume_transmittance(scene, media.volume, from, direction, distance, lambda_nm);
+    const Spectrum4 passes = volume_transmittance(scene, media.volume, from, direction, distance, lambda_nm, random);
     for (size_t j = 0; j < 4; ++j) light[j] *= passes[j];
   }
 

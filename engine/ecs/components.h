@@ -225,16 +225,18 @@ struct Visibility {
 };
 
 // What fills space between surfaces, absorbs, scatters and glows. Per metre of the world: `sigma_a`, `sigma_s`, times
-// `scale`. `g` is Henyey and Greenstein's mean cosine, -1 < g < 1, positive: forward. `emission` times `emission_scale`
+// `scale`. `g` is Henyey and Greenstein's mean cosine, -1 < g < 1, positive: forward; of a share `g2_share`, 0 to 1, of
+// what is scattered it is `g2`. `emission` times `emission_scale`
 // is radiance, W m^-2 sr^-1 nm^-1: a metre of it adds sigma_a times as much.
 struct Medium {
   SpectrumId sigma_a = 0, sigma_s = 0;
   float scale = 1;
-  float g = 0;
+  float g = 0, g2 = 0, g2_share = 0;
   SpectrumId emission = 0;
   float emission_scale = 1;
-  static constexpr auto fields = std::make_tuple(&Medium::sigma_a, &Medium::sigma_s, &Medium::scale, &Medium::g,
-                                                 &Medium::emission, &Medium::emission_scale);
+  static constexpr auto fields =
+      std::make_tuple(&Medium::sigma_a, &Medium::sigma_s, &Medium::scale, &Medium::g, &Medium::g2, &Medium::g2_share,
+                      &Medium::emission, &Medium::emission_scale);
 };
 
 // Between the centres of voxels: trilinear, or one of the eight around, by chance, with the trilinear weights.

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "engine/ecs/scene.h"
+#include "engine/ecs/volume_grids.h"
 #include "engine/sampling/distribution.h"
 #include "engine/sampling/window_distribution.h"
 #include "engine/simd/column.h"
@@ -126,8 +127,9 @@ inline constexpr uint32_t media_stack_size = 4, largest_medium = 0xffff;
 struct VolumeColumns {
   Column<uint32_t> sigma_a, sigma_s;  // SpectrumId, per metre, times `scale`
   Column<uint32_t> emission;          // SpectrumId, W m^-2 sr^-1 nm^-1, times `emission_scale`
-  Column<float> scale, emission_scale, g;
+  Column<float> scale, emission_scale, g, g2, g2_share;
   Column<uint32_t> scatters;  // 0: rays go straight through, whatever is absorbed on the way
+  Column<uint32_t> grid;      // row of World::grid_volumes: the coefficients are multiplied by grids; no_index: they hold
 };
 inline constexpr uint32_t keeps_volume = 0xffffffffu;
 // Beside those of component Visibility: shadow rays that look for the interfaces on their way.
@@ -251,6 +253,9 @@ inline uint32_t live_wavelengths(const RenderSettings& settings) {
   return settings.color == ColorMode::spectral ? 4 : 3;
 }
 
+inline constexpr uint32_t blackbody_steps = 4096;
+inline constexpr double blackbody_coldest = 100, blackbody_hottest = 1e6;  // kelvin
+
 // Embree's scene: known to build_accelerator, intersect and shadow only.
 struct Accelerator;
 
@@ -279,6 +284,12 @@ struct World {
   uint32_t camera_media[2] = {0, 0};  // the stack that paths start with
   VolumeColumns volumes;
   uint32_t camera_volume = 0;  // the row of volumes that paths start in
+  GridColumns grids;
+  std::vector<GridVolume> grid_volumes;
+  Column<float> majorants;  // two per cell, x fastest: the majorant, and what is there at least in the same unit
+  // In the modes of coefficients: three for blackbodies of unit peak, blackbody_steps times from blackbody_coldest to
+  // blackbody_hottest, evenly in the temperature's logarithm. Empty where no grid holds temperatures.
+  Column<float> blackbody_coefficients;
   Column<LightRow> lights;
   Column<uint32_t> image_of_light;  // its row of images, or no_index
   LightImages light_images;
@@ -310,6 +321,7 @@ struct World {
   bool has_interiors = false;       // some material is followed: paths carry their media
   bool has_volumes = false;         // volumes other than the empty one, or interfaces: paths carry what they are in
   bool has_interfaces = false;      // surfaces of ShadeKind::interface
+  bool has_grids = false;           // some volume varies in space: shadow rays carry the keys of their paths
   bool shares_paths = false;        // free paths differ between wavelengths: paths carry their shares (PathStream)
   bool has_textured_alpha = false;  // some roughness varies
   bool has_bumps = false;

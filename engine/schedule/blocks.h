@@ -11,6 +11,7 @@ namespace metamer {
 // every vector, but the last; which thread takes which is left open.
 template <class Items>
 void for_blocks(size_t count, uint32_t threads, size_t block, Items&& items) {
+  if (count == 0) return;
   struct Context {
     Items& items;
     size_t count, block;

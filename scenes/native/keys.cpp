@@ -67,8 +67,8 @@ constexpr KeySpec material_smooth[] = {{"type", required}, {"metal"},        {"g
                                        {"thickness"},      {"displacement"}, {"normal_map"}};
 constexpr KeySpec material_mirror[] = {{"type", required}};
 constexpr KeySpec material_interface[] = {{"type", required}};
-constexpr KeySpec medium_homogeneous[] = {{"type", required}, {"sigma_a"},       {"sigma_s"}, {"scale"}, {"g"},
-                                          {"emission"},       {"emission_scale"}};
+constexpr KeySpec medium_homogeneous[] = {{"type", required}, {"sigma_a"},  {"sigma_s"},       {"scale"}, {"g"}, {"g2"},
+                                          {"g2_share"},       {"emission"}, {"emission_scale"}};
 constexpr KeySpec entity_media[] = {{"inside"}, {"outside"}};
 constexpr KeySpec mesh[] = {{"file"}, {"positions"}, {"indices"}, {"normals"}, {"uvs"}};
 constexpr KeySpec entity[] = {{"name"},     {"parent"}, {"transform"}, {"motion"},     {"geometry"},

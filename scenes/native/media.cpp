@@ -19,6 +19,8 @@ Medium read_medium(SceneContext& context, const JsonObject& object) {
   medium.scale = static_cast<float>(object.number("scale", not_negative, 1) / context.metres_per_unit);
   medium.emission_scale = object.number_f("emission_scale", not_negative, 1);
   medium.g = object.number_f("g", open_unit, 0);
+  medium.g2 = object.number_f("g2", open_unit, 0);
+  medium.g2_share = object.number_f("g2_share", Range{0, 1, false, false}, 0);
   if (object.has("emission") && !(context.scene.spectra.max_value(medium.sigma_a) > 0))
     context.reader.error(*object.find("emission"), "what absorbs nothing emits nothing: 'emission' needs a 'sigma_a'");
   return medium;

@@ -19,6 +19,8 @@ JsonText write_medium(WriteContext& context, const Medium& medium) {
   spectrum("sigma_s", medium.sigma_s);
   number("scale", medium.scale, 1);
   number("g", medium.g, 0);
+  number("g2", medium.g2, 0);
+  number("g2_share", medium.g2_share, 0);
   if (context.own_spectra.max_value(medium.sigma_a) > 0) {  // what absorbs nothing emits nothing
     spectrum("emission", medium.emission);
     number("emission_scale", medium.emission_scale, 1);

@@ -107,7 +107,7 @@ size_t world_bytes(const World& world) {
          bytes_of(world.diffuse.reflectance, world.conductor.eta, world.conductor.kappa, world.conductor.alpha_x,
                   world.conductor.alpha_y, world.conductor.schlick, world.dielectric.eta, world.dielectric.schlick,
                   world.dielectric.dispersive) +
-         environments +
+         environments + world.grids.bytes() + bytes_of(world.majorants) +
          bytes_of(world.lights, world.image_of_light, world.light_images.rows, world.light_images.texels,
                   world.light_choice.cdf, world.spectra);
 }

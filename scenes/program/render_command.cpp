@@ -79,6 +79,9 @@ void tell_result(const FrameReport& report, bool quiet) {
   if (report.render.counters.lost_rays > 0)
     fmt::print(stderr, "metamer: warning: {} rays met more than {} interfaces between media and end there\n",
                report.render.counters.lost_rays, most_interfaces);
+  if (report.render.counters.grids.unfinished > 0)
+    fmt::print(stderr, "metamer: warning: {} rays collided more than {} times within one medium and end there\n",
+               report.render.counters.grids.unfinished, most_collisions);
   fmt::print(stderr, "metamer: first ray after {} ({} to read, {} to build)\n", short_time(report.first_ray_seconds),
              short_time(report.load_seconds), short_time(report.build_seconds));
   const double seconds = report.render.render_seconds;

@@ -48,6 +48,9 @@ Json::Value to_json(const FrameReport& report) {
   json["invalid_samples"] = count(report.invalid_samples);
   json["lost_media"] = count(counters.lost_media);
   json["lost_rays"] = count(counters.lost_rays);
+  json["grids"]["lookups"] = count(counters.grids.lookups);
+  json["grids"]["steps"] = count(counters.grids.steps);
+  json["grids"]["unfinished_rays"] = count(counters.grids.unfinished);
   json["rays"]["camera"] = count(counters.camera_rays);
   json["rays"]["bounce"] = count(counters.bounce_rays);
   json["rays"]["shadow"] = count(counters.shadow_rays);

@@ -14,6 +14,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
 
+// A share of the second lobe in what is scattered, the rest goes by the first.
+struct PhaseLobes {
+  VF g, g2, g2_share;
+};
+
 // (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^1.5), sr^-1, for -1 < g < 1: the value and the pdf of sample_phase, per solid
 // angle. Twin: reference::eval_phase(). Relative error below 2e-6 / (1 - |g|).
 HWY_INLINE VF eval_phase(VF cos_theta, VF g) {
@@ -39,6 +44,17 @@ HWY_INLINE Vec3 sample_phase(VF g, VF u, VF v) {
   const VF sin_theta = safe_sqrt(hn::NegMulAdd(cos_theta, cos_theta, one));
   const SinCos phi = sincos_2pi(v);
   return {hn::Mul(sin_theta, phi.cos), hn::Mul(sin_theta, phi.sin), cos_theta};
+}
+
+// The same of both lobes: the value and the pdf, per solid angle. Twins: those of reference::PhaseLobes. Relative error
+// below that of the narrower lobe.
+HWY_INLINE VF eval_phase(VF cos_theta, const PhaseLobes& lobes) {
+  const VF first = eval_phase(cos_theta, lobes.g), second = eval_phase(cos_theta, lobes.g2);
+  return hn::MulAdd(lobes.g2_share, hn::Sub(second, first), first);
+}
+// `choice` in [0, 1): below g2_share by the second lobe.
+HWY_INLINE Vec3 sample_phase(const PhaseLobes& lobes, VF choice, VF u, VF v) {
+  return sample_phase(hn::IfThenElse(hn::Lt(choice, lobes.g2_share), lobes.g2, lobes.g), u, v);
 }
 
 }  // namespace metamer::HWY_NAMESPACE

@@ -118,5 +118,10 @@ BsdfSample sample_thin(const Direction& wo, const ThinOptics& optics, double u);
 // The phase function: see phase-inl.h.
 double eval_phase(double cos_theta, double g);
 Direction sample_phase(double g, double u, double v);
+struct PhaseLobes {
+  double g = 0, g2 = 0, g2_share = 0;
+};
+double eval_phase(double cos_theta, const PhaseLobes& lobes);
+Direction sample_phase(const PhaseLobes& lobes, double choice, double u, double v);
 
 }  // namespace metamer::reference

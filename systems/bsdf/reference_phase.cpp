@@ -20,4 +20,12 @@ Direction sample_phase(double g, double u, double v) {
   return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta};
 }
 
+double eval_phase(double cos_theta, const PhaseLobes& lobes) {
+  return (1 - lobes.g2_share) * eval_phase(cos_theta, lobes.g) + lobes.g2_share * eval_phase(cos_theta, lobes.g2);
+}
+
+Direction sample_phase(const PhaseLobes& lobes, double choice, double u, double v) {
+  return sample_phase(choice < lobes.g2_share ? lobes.g2 : lobes.g, u, v);
+}
+
 }  // namespace metamer::reference

@@ -34,7 +34,7 @@ TEST(NativeWriter, KnowsEveryFieldThatASceneHas) {
   EXPECT_EQ(field_count<Camera>, 7u);
   EXPECT_EQ(field_count<Name>, 1u);
   EXPECT_EQ(field_count<Visibility>, 1u);
-  EXPECT_EQ(field_count<Medium>, 6u);
+  EXPECT_EQ(field_count<Medium>, 8u);
   EXPECT_EQ(field_count<MediumGrid>, 11u);  // their means are written, which is said
   EXPECT_EQ(field_count<MediumSlot>, 2u);
   EXPECT_EQ(field_count<Source>, 2u);  // a new file has lines of its own

@@ -16,14 +16,14 @@ namespace {
 
 constexpr float asymmetries[] = {0, 1e-7f, -1e-4f, 0.01f, 0.3f, -0.6f, 0.85f, -0.9f};
 
-// A case's alpha_x is g; the cosine is wi[2].
-std::vector<BsdfCase> random_phases(size_t count, float g) {
+// A case's alpha_x is g, alpha_y and shininess are the second lobe's and its share; the cosine is wi[2].
+std::vector<BsdfCase> random_phases(size_t count, float g, float g2 = 0, float g2_share = 0) {
   Random random(5);
   std::vector<BsdfCase> cases(count);
   for (BsdfCase& c : cases) {
-    c.alpha_x = g;
+    c.alpha_x = g, c.alpha_y = g2, c.shininess = g2_share;
     c.wi[2] = 2 * random.uniform() - 1;
-    c.u = random.uniform(), c.v = random.uniform();
+    c.u = random.uniform(), c.v = random.uniform(), c.choice = random.uniform();
   }
   return cases;
 }
@@ -56,6 +56,40 @@ TEST(Phase, IsDrawnByItsDensity) {
       DirectionHistogram histogram;
       for (const BsdfResult& draw : run_sample_phase(cases)) histogram.add(draw.wi[0], draw.wi[1], draw.wi[2]);
       const auto pdf = [&](double, double, double z) { return reference::eval_phase(z, g); };
+      EXPECT_GT(histogram.test(pdf, 24).p_value, chi_square_level) << g;
+    });
+  }
+}
+
+constexpr float two_lobes[][3] = {{0.85f, -0.3f, 0.25f}, {0.2f, 0.9f, 0.5f}, {-0.6f, 0.5f, 1}, {0.4f, -0.9f, 0.03f}};
+
+TEST(Phase, OfTwoLobesStaysWithinItsStatedError) {
+  for (const auto& [g, g2, share] : two_lobes) {
+    const std::vector<BsdfCase> cases = random_phases(20000, g, g2, share);
+    const reference::PhaseLobes lobes{g, g2, share};
+    const double bound = 2e-6 / (1 - std::max(std::abs(double{g}), std::abs(double{g2})));
+    for_each_target([&] {
+      const std::vector<BsdfResult> values = run_eval_phase(cases), samples = run_sample_phase(cases);
+      for (size_t i = 0; i < cases.size(); ++i) {
+        const double value = reference::eval_phase(cases[i].wi[2], lobes);
+        ASSERT_NEAR(values[i].pdf, value, bound * value) << "g " << g << " cos " << cases[i].wi[2];
+        const reference::Direction wi = reference::sample_phase(lobes, cases[i].choice, cases[i].u, cases[i].v);
+        ASSERT_NEAR(samples[i].wi[2], wi.z, 5 * bound) << "g " << g << " u " << cases[i].u;
+        const double there = reference::eval_phase(samples[i].wi[2], lobes);
+        ASSERT_NEAR(samples[i].pdf, there, bound * there);
+      }
+    });
+  }
+}
+
+TEST(Phase, OfTwoLobesIsDrawnByItsDensity) {
+  for (const auto& [g, g2, share] : two_lobes) {
+    const std::vector<BsdfCase> cases = random_phases(200000, g, g2, share);
+    const reference::PhaseLobes lobes{g, g2, share};
+    for_each_target([&] {
+      DirectionHistogram histogram;
+      for (const BsdfResult& draw : run_sample_phase(cases)) histogram.add(draw.wi[0], draw.wi[1], draw.wi[2]);
+      const auto pdf = [&](double, double, double z) { return reference::eval_phase(z, lobes); };
       EXPECT_GT(histogram.test(pdf, 24).p_value, chi_square_level) << g;
     });
   }

@@ -268,15 +268,16 @@ std::vector<BsdfResult> SampleCoated(const Coat& coat, const std::vector<BsdfCas
 std::vector<BsdfResult> EvalPhase(const std::vector<BsdfCase>& cases) {
   return run(cases, [](const Arguments& a) {
     Results r = nothing();
-    r.pdf = eval_phase(a.wi.z, a.alpha_x);
+    r.pdf = eval_phase(a.wi.z, PhaseLobes{a.alpha_x, a.alpha_y, a.shininess});
     return r;
   });
 }
 std::vector<BsdfResult> SamplePhase(const std::vector<BsdfCase>& cases) {
   return run(cases, [](const Arguments& a) {
     Results r = nothing();
-    r.wi = sample_phase(a.alpha_x, a.u, a.v);
-    r.pdf = eval_phase(r.wi.z, a.alpha_x);
+    const PhaseLobes lobes = {a.alpha_x, a.alpha_y, a.shininess};
+    r.wi = sample_phase(lobes, a.choice, a.u, a.v);
+    r.pdf = eval_phase(r.wi.z, lobes);
     return r;
   });
 }
