@@ -30,7 +30,7 @@ void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
   take_all(arena, rows, s.uv);
   take_all(arena, rows, s.alpha);
   for (float** column : {&s.distance, &s.offset, &s.pdf_direction, &s.eta_scale, &s.light_distance, &s.light_pdf,
-                         &s.next_pdf, &s.next_eta_scale, &s.time})
+                         &s.next_pdf, &s.next_eta_scale, &s.time, &s.thickness, &s.asymmetry})
     *column = arena.take<float>(rows);
   for (uint32_t** column : {&s.material, &s.light, &s.pixel_seed, &s.index, &s.slot})
     *column = arena.take<uint32_t>(rows);
@@ -38,10 +38,12 @@ void take_shade(BatchArena& arena, size_t rows, ShadeStream& s) {
   take_all(arena, rows, s.next_media);
   take_all(arena, rows, s.volumes);
   take_all(arena, rows, s.share);
+  take_all(arena, rows, s.footprint);
+  take_all(arena, rows, s.base_alpha);
 }
 
 constexpr size_t columns_in_all =
-    2 * 27 + 8 + (11 * 3 + 6 * 4 + 4 + 9 + 5 + 4 + 2 + 4) + (6 + 1 + 4 + 2 + 4 + 1) + (12 + 2) + 1;
+    2 * 27 + 8 + (11 * 3 + 7 * 4 + 8 + 9 + 5 + 4 + 2 + 4) + (6 + 1 + 4 + 2 + 4 + 1) + (12 + 2) + 1;
 constexpr size_t column_bytes = (sorted_capacity + column_lanes) * sizeof(float) + 2 * column_alignment;
 
 }  // namespace

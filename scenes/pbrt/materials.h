@@ -10,15 +10,17 @@ namespace metamer::pbrt {
 // unless "remaproughness" is false. Errors: negative ones.
 struct Widths {
   float alpha_x = 0, alpha_y = 0;
+  TextureId x_texture = no_index, y_texture = no_index;  // in their place
 };
 Widths read_widths(Reader& reader, Parameters& parameters, std::string_view prefix, double fallback);
 // "reflectance", 0.5 by default, or its texture.
 void read_reflectance(Reader& reader, Parameters& parameters, Material& material);
 // Index of refraction, 1.5 by default. Errors: one that is not positive.
 SpectrumId read_index(Reader& reader, Parameters& parameters, std::string_view name);
-// Of a metal: copper by default, or of a reflectance; `prefix` before "eta" and "k".
+// Of a metal: copper by default, or of a reflectance, which may be a texture; `prefix` before "eta" and "k".
 struct MetalIndex {
   SpectrumId eta = unit_spectrum, kappa = zero_spectrum;
+  TextureId reflectance_texture = no_index;
 };
 MetalIndex read_metal(Reader& reader, Parameters& parameters, std::string_view prefix);
 
