@@ -18,7 +18,9 @@ std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics&
   const Filter& filter = scene.settings.filter;
   world->filter = make_pixel_filter(filter.kind, filter.radius_x, filter.radius_y, filter.sigma);
   const std::vector<glm::dmat4> to_world = build_transforms(scene, diagnostics);
+  const size_t errors_before = diagnostics.error_count();
   build_textures(scene, disposable, *world, diagnostics);
+  if (diagnostics.error_count() > errors_before) return nullptr;  // what follows needs them
   const std::vector<MaterialRow> materials = build_materials(scene, *world, diagnostics);
   const std::vector<VolumeSides> volumes = build_volumes(scene, *world, diagnostics);
   build_geometry(scene, to_world, materials, volumes, *world, diagnostics);

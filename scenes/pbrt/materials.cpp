@@ -14,7 +14,7 @@ constexpr std::string_view material_kinds[] = {
     "hair",    "interface", "measured",   "mix",           "subsurface",      "thindielectric"};
 
 void read_roughness(Reader& reader, Parameters& parameters, Material& material) {
-  const Widths widths = read_widths(reader, parameters, "", 0);
+  const Widths widths = read_widths(reader, parameters, "", ConstantTextures::kept);
   material.alpha_x = widths.alpha_x;
   material.alpha_y = widths.alpha_y;
   material.alpha_x_texture = widths.x_texture;
@@ -77,15 +77,24 @@ void read_unsupported(Reader& reader, std::string_view kind, Parameters& paramet
 
 }  // namespace
 
-Widths read_widths(Reader& reader, Parameters& parameters, std::string_view prefix, double fallback) {
+NumberOrTexture without_constants(const Reader& reader, NumberOrTexture value) {
+  if (value.texture == no_index) return value;
+  const Texture& texture = reader.scene.textures[value.texture];
+  return texture.kind == TextureKind::constant ? NumberOrTexture{double{texture.value}, no_index} : value;
+}
+
+Widths read_widths(Reader& reader, Parameters& parameters, std::string_view prefix, ConstantTextures constants) {
   const auto name_of = [&](std::string_view name) { return std::string(prefix).append(name); };
   const std::string both_name = name_of("roughness"), u_name = name_of("uroughness"), v_name = name_of("vroughness");
-  const NumberOrTexture both = read_number_or_texture(reader, parameters, both_name, fallback);
+  const auto value_of = [&](const std::string& name, double fallback) {
+    const NumberOrTexture value = read_number_or_texture(reader, parameters, name, fallback);
+    return constants == ConstantTextures::kept ? value : without_constants(reader, value);
+  };
+  const NumberOrTexture both = value_of(both_name, 0);
   const bool remap = parameters.boolean("remaproughness", true);
   if (both.number < 0) parameters.error(both_name, "roughness must not be negative");
   const auto read = [&](const std::string& name, float& alpha, TextureId& texture) {
-    const NumberOrTexture own =
-        parameters.has(name) ? read_number_or_texture(reader, parameters, name, both.number) : both;
+    const NumberOrTexture own = parameters.has(name) ? value_of(name, both.number) : both;
     if (own.number < 0 && parameters.has(name)) parameters.error(name, "roughness must not be negative");
     const double roughness = std::max(own.number, 0.0);
     alpha = static_cast<float>(remap ? std::sqrt(roughness) : roughness);
