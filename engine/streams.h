@@ -2,7 +2,7 @@
 // columns together stay within a core's L2 cache. Nothing here outlives a batch, except the slots, which live
 // until the batch is accumulated.
 //
-// Per path: PathStream 112 bytes, twice (this bounce's and the next one's rays); HitStream 32; ShadeStream 340;
+// Per path: PathStream 112 bytes, twice (this bounce's and the next one's rays); HitStream 32; ShadeStream 372;
 // ShadowStream 80; Slots 60. Columns that a scene has no use for are not touched.
 #pragma once
 #include <array>
@@ -149,12 +149,15 @@ struct ShadeStream {
   Columns<float, 3> normal;                   // geometric, unit, on the side the shape calls its outside
   Columns<float, 3> shading_normal, tangent;  // unit; tangent only where the world asks for it
   Columns<float, 2> uv;                       // only where World::needs_uvs()
-  Columns<float, 3> dp_du, dp_dv;             // of the position, as shading sees it; only where the world has bumps
-  Columns<float, 3> dn_du, dn_dv;             // of the shading normal; the same
-  float* distance;                            // metres from the previous vertex
-  float* offset;                              // metres along the normal that a new ray must start away from the surface
-  uint32_t* material;                         // row in the table of the kind
-  uint32_t* light;                            // row of World::lights that this primitive is, or no_index
+  // What a texture lookup stands for, in u and v: along the shortest diameter on the surface, and along the longest one
+  // (systems/footprint-inl.h); only where World::has_mips.
+  Columns<float, 4> footprint;
+  Columns<float, 3> dp_du, dp_dv;  // of the position, as shading sees it; only where the world has bumps
+  Columns<float, 3> dn_du, dn_dv;  // of the shading normal; the same
+  float* distance;                 // metres from the previous vertex
+  float* offset;                   // metres along the normal that a new ray must start away from the surface
+  uint32_t* material;              // row in the table of the kind
+  uint32_t* light;                 // row of World::lights that this primitive is, or no_index
   Columns<float, 4> lambda_nm, throughput;
   float *pdf_direction, *eta_scale;
   uint32_t *pixel_seed, *index, *slot;
@@ -164,7 +167,10 @@ struct ShadeStream {
   bool carries_time = false;
   // Writer: textures, in lanes whose material has one.
   Columns<float, 4> reflectance, transmittance;
-  Columns<float, 2> alpha;       // GGX widths along and across the tangent
+  Columns<float, 2> alpha;  // GGX widths along and across the tangent
+  // Of layered materials: of the base; optical; mean cosine. `transmittance` is the layer's albedo there.
+  Columns<float, 2> base_alpha;
+  float *thickness, *asymmetry;
   Columns<uint32_t, 2> volumes;  // on the inside and the outside of the surface, where `carries_volumes`
   bool carries_volumes = false;
   bool carries_keys = false;  // shadow rays take the keys of their paths along

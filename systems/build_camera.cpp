@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "engine/simd/portable_math.h"
@@ -23,6 +24,27 @@ Window screen_window(const Camera& camera, const RenderSettings& settings) {
 
 void store(float (&target)[3], const glm::dvec3& v) {
   for (int i = 0; i < 3; ++i) target[i] = static_cast<float>(v[i]);
+}
+
+// Lookups of textures stand for a quarter of a pixel, as in pbrt-v4 from 64 samples per pixel on: the samples do the
+// rest, and what a lens or a curved mirror magnifies up to fourfold stays sharp.
+constexpr double footprint_pixels = 0.25;
+
+// A pixel at the centre of the picture.
+void set_footprint(const Camera& camera, const RenderSettings& settings, const glm::dmat4& matrix, CameraRow& row) {
+  const auto length = [](const float(&v)[3]) { return std::hypot(double{v[0]}, double{v[1]}, double{v[2]}); };
+  if (camera.kind == CameraKind::spherical) {
+    const double pi = 3.14159265358979323846, pixels = double(settings.width) * settings.height;
+    const bool is_map = camera.mapping == ImageMapping::latitude_longitude;
+    row.footprint_angle =
+        static_cast<float>(footprint_pixels * (is_map ? pi / settings.height : std::sqrt(4 * pi / pixels)));
+    return;
+  }
+  const double pixel = footprint_pixels * std::min(length(row.right), length(row.down));
+  if (camera.kind == CameraKind::perspective)
+    row.footprint_angle = static_cast<float>(pixel / glm::length(glm::dvec3(matrix[2])));
+  else
+    row.footprint_width = static_cast<float>(pixel);
 }
 
 // All that depends on where the camera is; the matrix takes it to the world.
@@ -89,7 +111,9 @@ void build_camera(const Scene& scene, std::span<const glm::dmat4> to_world, Worl
     place_camera(camera, world.settings, key, row);
     world.camera_keys.push_back(key_of(row));
   }
-  place_camera(camera, world.settings, keys.empty() ? to_world[table.owner(0).index] : keys.front(), row);
+  const glm::dmat4& start = keys.empty() ? to_world[table.owner(0).index] : keys.front();
+  place_camera(camera, world.settings, start, row);
+  set_footprint(camera, world.settings, start, row);
 }
 
 }  // namespace metamer

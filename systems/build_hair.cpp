@@ -25,6 +25,8 @@ MaterialRow add_hair(const Material& material, World& world) {
   const HairShape shape = hair_shape(double{hair.beta_m}, double{hair.beta_n}, double{hair.tilt_deg});
   table.eta.push_back(static_cast<float>(world.spectra.value(material.eta, 550)));
   table.sigma_a.push_back(hair.sigma_a);
+  table.texture.push_back(material.reflectance_texture);
+  table.absorption_of_log.push_back(static_cast<float>(hair_absorption_of_log(double{hair.beta_n})));
   table.variance.push_back(static_cast<float>(shape.variance));
   table.width.push_back(static_cast<float>(shape.width));
   for (size_t k = 0; k < 3; ++k) {

@@ -9,9 +9,12 @@
 namespace metamer {
 namespace {
 
-// Light has to be followed at random where a conductor or the layer itself scatters it.
+// Light has to be followed at random where a conductor or the layer itself scatters it, or the coat varies.
 bool is_walked(const Material& material, const SpectrumSet& spectra) {
-  return material.layer.base == LayerBase::conductor || spectra.max_value(material.layer.albedo) > 0;
+  const Layer& layer = material.layer;
+  const bool varies = material.alpha_x_texture != no_index || material.alpha_y_texture != no_index ||
+                      layer.thickness_texture != no_index || layer.albedo_texture != no_index;
+  return varies || layer.base == LayerBase::conductor || spectra.max_value(layer.albedo) > 0;
 }
 
 }  // namespace
@@ -36,11 +39,34 @@ bool check_layered(const Scene& scene, Entity entity, const Material& material, 
   }
   if (diagnostics.error_count() > errors_before) return false;
   if (is_walked(material, spectra) && !spectra.is_constant(material.eta))
-    diagnostics.warning(scene.location(entity),
-                        fmt::format("{}: a layer over a metal, or one that scatters, has the same index on all "
-                                    "wavelengths: that at 550 nm",
-                                    scene.describe(entity)));
+    diagnostics.warning(
+        scene.location(entity),
+        fmt::format("{}: a layer over a metal, or one that scatters or varies, has the same index on all "
+                    "wavelengths: that at 550 nm",
+                    scene.describe(entity)));
   return true;
+}
+
+// Programs in place of what the tables hold; facets of a matched index have no width.
+void add_layer_textures(const Material& material, bool matched, World& world) {
+  LayeredColumns& table = world.layered;
+  const Layer& layer = material.layer;
+  table.alpha_texture[0].push_back(matched ? no_index : material.alpha_x_texture);
+  table.alpha_texture[1].push_back(matched ? no_index : material.alpha_y_texture);
+  table.base_alpha_texture[0].push_back(layer.base_alpha_x_texture);
+  table.base_alpha_texture[1].push_back(layer.base_alpha_y_texture);
+  table.thickness_texture.push_back(layer.thickness_texture);
+  table.asymmetry_texture.push_back(layer.asymmetry_texture);
+  table.albedo_texture.push_back(layer.albedo_texture);
+  const auto is_set = [](const Column<uint32_t>& column) { return column[column.size() - 1] != no_index; };
+  if (is_set(table.alpha_texture[0]) || is_set(table.alpha_texture[1])) world.has_textured_alpha = true;
+  for (const Column<uint32_t>* column :
+       {&table.alpha_texture[0], &table.alpha_texture[1], &table.base_alpha_texture[0], &table.base_alpha_texture[1],
+        &table.thickness_texture, &table.asymmetry_texture, &table.albedo_texture})
+    world.has_textured_layers = world.has_textured_layers || is_set(*column);
+  if (table.alpha_texture[0].back() != table.alpha_texture[1].back() ||
+      layer.base_alpha_x_texture != layer.base_alpha_y_texture)
+    world.needs_tangents = true;
 }
 
 MaterialRow add_layered(const Material& material, World& world) {
@@ -71,6 +97,7 @@ MaterialRow add_layered(const Material& material, World& world) {
   table.base_alpha_y.push_back(width(layer.base_alpha_y, layer.base_alpha_x));
   if (table.alpha_x.back() != table.alpha_y.back() || table.base_alpha_x.back() != table.base_alpha_y.back())
     world.needs_tangents = true;
+  add_layer_textures(material, matched, world);
   return {ShadeKind::layered, static_cast<uint32_t>(table.eta.size() - 1)};
 }
 

@@ -215,11 +215,12 @@ MaterialRow add_material(const Material& material, World& world) {
 }
 
 // What bends the shading normal of a material's row.
-void add_bump(const Scene& scene, const Material& material, const MaterialRow& row, World& world) {
+void add_bump(const Scene& scene, const Material& material, const MaterialRow& row, World& world,
+              Diagnostics& diagnostics) {
   uint32_t key = material.displacement;
   if (material.normal_map != no_index)
     key = static_cast<uint32_t>(world.textures.programs.size()) +
-          add_normal_map(scene.images[material.normal_map], material.normal_map, world.textures);
+          add_normal_map(scene.images[material.normal_map], material.normal_map, world.textures, diagnostics);
   if (key == no_index || row.kind == ShadeKind::absorber) return;
   Column<uint32_t>& bumps = world.bumps[static_cast<size_t>(row.kind)];
   while (bumps.size() <= row.row) bumps.push_back(no_index);
@@ -247,7 +248,7 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
     if (material.kind == MaterialKind::hair && !check_hair(scene, entity, material, diagnostics)) return;
     if (material.kind == MaterialKind::mix) return;
     own[entity.index] = add_material(material, world);
-    add_bump(scene, material, own[entity.index], world);
+    add_bump(scene, material, own[entity.index], world, diagnostics);
   });
   if (world.media.eta.size() > largest_medium + 1)
     diagnostics.error({}, fmt::format("the scene has {} media that paths follow; at most {} are possible",

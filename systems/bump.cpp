@@ -30,7 +30,7 @@ HWY_INLINE void store_frame(const World& world, const Vec3& bent, const Vec3& al
 // Surfaces", SIGGRAPH 1978, with the last term that he drops for small d).
 void displaced_lanes(const World& world, uint32_t program, const uint32_t* lanes, uint32_t count, ShadeStream& shade) {
   for_each_vector(lanes, count, [&](VI lane) {
-    TexturePoint points[3] = {point_of(shade, lane)};
+    TexturePoint points[3] = {point_of(world, shade, lane)};
     move_points(gather(shade.dp_du, lane), gather(shade.dp_dv, lane), points);
     VF d[3];
     run_program<TextureResult::slopes>(world, world.textures.programs[program], points, d);
@@ -44,17 +44,22 @@ void displaced_lanes(const World& world, uint32_t program, const uint32_t* lanes
 // A normal (2 r - 1, 2 g - 1, 2 b - 1) in the frame of dp/du, n x dp/du and n.
 void mapped_lanes(const World& world, uint32_t map, const uint32_t* lanes, uint32_t count, ShadeStream& shade) {
   const TextureImage& image = world.textures.normal_maps[map];
-  const float* numbers = world.textures.numbers.data() + image.first_texel;
+  const TextureSet& set = world.textures;
+  const float* numbers = set.numbers.data() + image.first_texel;
+  const ImageLevel level = level_of({0, image.width, image.height}, set.normal_map_files, map);
   for_each_vector(lanes, count, [&](VI lane) {
-    const TexturePoint point = point_of(shade, lane);
-    const TexelSquare square = texel_square(image, {point.u, point.v, point.u}, TextureWrap::repeat);
-    VF local[3];
+    const TexturePoint point = point_of(world, shade, lane);
+    const TexelSquare square = texel_square(level, {point.u, point.v, point.u}, TextureWrap::repeat);
+    VF rgb[4][3], local[3];
+    for (int k = 0; k < 4; ++k) {
+      const VI nth = texel_of(level, square.texel[k]), at = hn::Add(hn::ShiftLeft<1>(nth), nth);
+      if (level.is_in_file)
+        fetch<3>(set, level, square.texel[k], rgb[k]);
+      else
+        for (int c = 0; c < 3; ++c) rgb[k][c] = gather(numbers + c, at);
+    }
     for (int c = 0; c < 3; ++c) {
-      VF texel[4];
-      for (int k = 0; k < 4; ++k) {
-        const VI at = hn::Add(hn::ShiftLeft<1>(square.index[k]), square.index[k]);
-        texel[k] = gather(numbers + c, at);
-      }
+      const VF texel[4] = {rgb[0][c], rgb[1][c], rgb[2][c], rgb[3][c]};
       const VF upper = between(texel[0], texel[1], square.right), lower = between(texel[2], texel[3], square.right);
       local[c] = hn::MulSub(splat(2.0f), between(upper, lower, square.lower), splat(1.0f));
     }

@@ -82,13 +82,20 @@ HWY_INLINE Surface curve_surface(const World& world, const Vec3& origin, const V
                    gather(&world.placements[0].normal_sign, hn::ShiftLeft<5>(placement));
   surface.shading_normal = surface.normal;
   surface.tangent = transform_vector(m, along);
-  if (world.has_bumps) {
+  const VI span = hn::Add(segment, segment);
+  if (world.has_bumps || world.has_mips) {
     // Bumps along the fibre and across; the normal counts as constant.
     const Vec3 none = {zero, zero, zero};
-    surface.slopes = {{transform_vector(m, centre.derivative * splat(3.0f)), transform_vector(m, v_axis * width)},
-                      {none, none}};
+    const Slopes along_and_across = {transform_vector(m, centre.derivative * splat(3.0f)),
+                                     transform_vector(m, v_axis * width)};
+    surface.slopes = {along_and_across, {none, none}};
+    if (world.has_mips) {
+      // The fibre's own u runs over several segments.
+      const VF per_u = safe_reciprocal(gather(world.curve_u.data() + 1, span));
+      uv_footprint(world.camera, surface.position, surface.normal,
+                   {along_and_across.along_u * per_u, along_and_across.along_v}, surface.footprint);
+    }
   }
-  const VI span = hn::Add(segment, segment);
   surface.u = hn::MulAdd(u, gather(world.curve_u.data() + 1, span), gather(world.curve_u.data(), span));
   surface.v = v;
   const Vec3 ones = {one, one, one};

@@ -36,4 +36,9 @@ constexpr uint32_t texture_image_dimension(uint32_t depth, uint32_t nth) {
   return bounce_dimension(depth, texture_dimension) + nth * 0x10000;
 }
 
+// And a number that chooses its level.
+constexpr uint32_t texture_level_dimension(uint32_t depth, uint32_t nth) {
+  return texture_image_dimension(depth, nth) ^ 0x80000000u;
+}
+
 }  // namespace metamer

@@ -32,7 +32,9 @@ std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics&
       make_pixel_filter(filter.kind, filter.radius_x, filter.radius_y, {filter.sigma, filter.b, filter.c, filter.tau});
   if (scene.settings.white_balance_kelvin > 0) world->sensor_matrix = white_balance(scene.settings);
   const std::vector<glm::dmat4> to_world = build_transforms(scene, diagnostics);
-  build_textures(scene, *world, diagnostics);
+  const size_t errors_before = diagnostics.error_count();
+  build_textures(scene, disposable, *world, diagnostics);
+  if (diagnostics.error_count() > errors_before) return nullptr;  // what follows needs them
   const std::vector<MaterialRow> materials = build_materials(scene, *world, diagnostics);
   const std::vector<VolumeSides> volumes = build_volumes(scene, to_world, *world, diagnostics);
   if (disposable != nullptr) std::vector<Grid>().swap(disposable->grids);

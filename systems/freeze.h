@@ -27,9 +27,11 @@ struct MaterialRow {
 std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagnostics& diagnostics);
 
 // Textures as programs, program i for texture i; images as texels. Errors: expressions that need too deep a stack.
-void build_textures(const Scene& scene, World& world, Diagnostics& diagnostics);
+// Images that are left in their files are prepared for the cache. Of `disposable`, if it is not null and the scene
+// itself, pixels that are not needed any more are given back.
+void build_textures(const Scene& scene, Scene* disposable, World& world, Diagnostics& diagnostics);
 // The row of an image as a normal map; one for all that use it.
-uint32_t add_normal_map(const Image& image, ImageId id, TextureSet& set);
+uint32_t add_normal_map(const Image& image, ImageId id, TextureSet& set, Diagnostics& diagnostics);
 
 // The Medium of the entity as it is rendered: what varies in space counts by its means, what is in a file that nothing
 // reads is empty; a warning says so. New spectra go to `spectra`, which begins as the scene's.

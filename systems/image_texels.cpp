@@ -54,6 +54,17 @@ void store_coefficients(const Image& image, RgbKind kind, ColorMode color, Colum
 
 }  // namespace
 
+float pixel_number(const float* rgb, float alpha, TextureChannel channel) {
+  switch (channel) {
+    case TextureChannel::red: return rgb[0];
+    case TextureChannel::green: return rgb[1];
+    case TextureChannel::blue: return rgb[2];
+    case TextureChannel::alpha: return alpha;
+    case TextureChannel::average: break;
+  }
+  return (rgb[0] + rgb[1] + rgb[2]) / 3;
+}
+
 Column<float> image_texels(const Image& image, RgbKind kind, ColorMode color) {
   const size_t count = size_t{image.width} * image.height;
   Column<float> texels;

@@ -209,6 +209,12 @@ HWY_INLINE void lane_reflectance(const World& world, const Column<uint32_t>& ids
   lane_reflectance(world, ids, programs, shade.reflectance, row, shade, i, out);
 }
 
+// Of the metal of eta 1 that reflects so much along the normal: 2 sqrt(R) / sqrt(1 - R), as in pbrt-v4.
+HWY_INLINE VF kappa_of_reflectance(VF reflectance) {
+  const VF r = hn::Min(hn::Max(reflectance, hn::Zero(FloatTag())), splat(0.9999f));
+  return hn::Mul(splat(2.0f), hn::Sqrt(hn::Div(r, hn::Sub(splat(1.0f), r))));
+}
+
 // A GGX width of each lane's material: a number of its row, or what `textures` made of program `programs[row]`.
 HWY_INLINE VF lane_alpha(const World& world, const Column<float>& alphas, const Column<uint32_t>& programs, VI row,
                          const float* textured_alpha, size_t i) {

@@ -9,17 +9,14 @@ HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
 namespace {
 
-// Where a reflectance along the normal is given: eta 1 and kappa 2 sqrt(R) / sqrt(1 - R), as pbrt-v4.
+// Where a reflectance along the normal is given.
 HWY_INLINE void apply_reflectance(const World& world, const ShadeStream& shade, size_t i, VI row,
                                   ConductorOptics& optics) {
-  const VF one = splat(1.0f);
   const MF given = float_mask(hn::Ne(gather(world.conductor.texture.data(), row), splat_u(no_index)));
   if (hn::AllFalse(FloatTag(), given)) return;
   for (size_t j = 0; j < 4; ++j) {
-    const VF reflectance = clamp(load(shade.reflectance[j], i), 0.0f, 0.9999f);
-    const VF kappa = hn::Mul(splat(2.0f), hn::Sqrt(hn::Div(reflectance, hn::Sub(one, reflectance))));
-    optics.n[j] = hn::IfThenElse(given, one, optics.n[j]);
-    optics.kappa[j] = hn::IfThenElse(given, kappa, optics.kappa[j]);
+    optics.n[j] = hn::IfThenElse(given, splat(1.0f), optics.n[j]);
+    optics.kappa[j] = hn::IfThenElse(given, kappa_of_reflectance(load(shade.reflectance[j], i)), optics.kappa[j]);
   }
 }
 

@@ -19,6 +19,14 @@ HWY_INLINE HairOptics hair_optics(const World& world, const ShadeStream& shade, 
   o.h = clamp(hn::MulSub(splat(2.0f), load(shade.uv[1], i), splat(1.0f)), -1.0f, 1.0f);
   o.eta = gather(table.eta.data(), row);
   eval_spectrum4(world.spectra.view(), gather(table.sigma_a.data(), row), lambda_nm, o.sigma_a);
+  if (world.has_textures()) {
+    const MF textured = float_mask(hn::Ne(gather(table.texture.data(), row), splat_u(no_index)));
+    const VF factor = gather(table.absorption_of_log.data(), row);
+    for (size_t j = 0; j < 4; ++j) {
+      const VF root = hn::Mul(log(hn::Max(load(shade.reflectance[j], i), splat(1e-6f))), factor);
+      o.sigma_a[j] = hn::IfThenElse(textured, hn::Mul(root, root), o.sigma_a[j]);
+    }
+  }
   o.variance = gather(table.variance.data(), row);
   o.width = gather(table.width.data(), row);
   for (size_t k = 0; k < 3; ++k) {

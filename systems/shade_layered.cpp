@@ -20,13 +20,29 @@ HWY_INLINE LayeredOptics layered_optics(const World& world, const ShadeStream& s
   const auto is_set = [&](const Column<uint32_t>& column) {
     return float_mask(hn::Ne(gather(column.data(), row), splat_u(0)));
   };
+  const auto is_textured = [&](const Column<uint32_t>& programs) {
+    return float_mask(hn::Ne(gather(programs.data(), row), splat_u(no_index)));
+  };
+  const auto varying = [&](const Column<float>& column, const Column<uint32_t>& programs, const float* made) {
+    const VF value = number(column);
+    return world.has_textured_layers ? hn::IfThenElse(is_textured(programs), load(made, i), value) : value;
+  };
+  // Two widths of which a texture made one: as in build_layered.cpp.
+  const auto widths = [&](VF& x, VF& y) {
+    if (!world.has_textured_layers) return;
+    const MF rough = hn::Ge(hn::Max(x, y), smooth);
+    x = hn::IfThenElseZero(rough, hn::Max(x, splat(least_alpha)));
+    y = hn::IfThenElseZero(rough, hn::Max(y, splat(least_alpha)));
+  };
   LayeredOptics o;
   o.eta = number(table.eta);
-  o.alpha_x = number(table.alpha_x);
-  o.alpha_y = number(table.alpha_y);
+  o.alpha_x = varying(table.alpha_x, table.alpha_texture[0], shade.alpha[0]);
+  o.alpha_y = varying(table.alpha_y, table.alpha_texture[1], shade.alpha[1]);
+  widths(o.alpha_x, o.alpha_y);
   o.smooth_surface = hn::Lt(hn::Max(o.alpha_x, o.alpha_y), smooth);
-  o.thickness = number(table.thickness);
-  o.asymmetry = number(table.asymmetry);
+  o.thickness = hn::Max(varying(table.thickness, table.thickness_texture, shade.thickness), hn::Zero(FloatTag()));
+  o.asymmetry = varying(table.asymmetry, table.asymmetry_texture, shade.asymmetry);
+  if (world.has_textured_layers) o.asymmetry = clamp(o.asymmetry, -0.9999f, 0.9999f);
   o.max_depth = number(table.max_depth);
   o.walks = number(table.walks);
   o.conductor = is_set(table.conductor);
@@ -35,14 +51,28 @@ HWY_INLINE LayeredOptics layered_optics(const World& world, const ShadeStream& s
   lane_reflectance(world, table.reflectance, table.texture, row, shade, i, o.reflectance);
   eval_spectrum4(spectra, gather(table.base_eta.data(), row), lambda_nm, o.metal.n);
   eval_spectrum4(spectra, gather(table.base_kappa.data(), row), lambda_nm, o.metal.kappa);
+  if (world.has_textured_layers) {
+    const MF textured = is_textured(table.albedo_texture);
+    for (int j = 0; j < 4; ++j)
+      o.albedo[j] = hn::IfThenElse(textured, load(shade.transmittance[static_cast<size_t>(j)], i), o.albedo[j]);
+    o.scatters = hn::Or(hn::AndNot(textured, o.scatters), hn::And(textured, hn::Gt(max_of(o.albedo), splat(0.0f))));
+  }
+  if (world.has_textures()) {
+    const MF textured = hn::And(o.conductor, is_textured(table.texture));
+    for (int j = 0; j < 4; ++j) {
+      o.metal.n[j] = hn::IfThenElse(textured, splat(1.0f), o.metal.n[j]);
+      o.metal.kappa[j] = hn::IfThenElse(textured, kappa_of_reflectance(o.reflectance[j]), o.metal.kappa[j]);
+    }
+  }
   const VF inv_eta = hn::Div(splat(1.0f), o.eta);
   for (int j = 0; j < 4; ++j) {
     o.metal.n[j] = hn::Mul(o.metal.n[j], inv_eta);
     o.metal.kappa[j] = hn::Mul(o.metal.kappa[j], inv_eta);
   }
   o.metal.schlick = hn::Lt(o.eta, hn::Zero(FloatTag()));
-  o.base_alpha_x = number(table.base_alpha_x);
-  o.base_alpha_y = number(table.base_alpha_y);
+  o.base_alpha_x = varying(table.base_alpha_x, table.base_alpha_texture[0], shade.base_alpha[0]);
+  o.base_alpha_y = varying(table.base_alpha_y, table.base_alpha_texture[1], shade.base_alpha[1]);
+  widths(o.base_alpha_x, o.base_alpha_y);
   o.smooth_base = hn::And(o.conductor, hn::Lt(hn::Max(o.base_alpha_x, o.base_alpha_y), smooth));
   return o;
 }

@@ -8,6 +8,7 @@
 
 #include "engine/ecs/world.h"
 #include "engine/simd/math-inl.h"
+#include "systems/footprint-inl.h"
 #include "systems/lanes-inl.h"
 #include "systems/surface_slopes-inl.h"
 
@@ -23,6 +24,7 @@ struct Surface {
   VF u, v;
   VF offset;
   SurfaceSlopes slopes;  // where the world has bumps
+  VF footprint[4];       // where it has mips; ShadeStream's
 };
 
 // Unit roundoff of float.
@@ -38,6 +40,7 @@ HWY_INLINE Surface select(MF mask, const Surface& yes, const Surface& no) {
   s.v = hn::IfThenElse(mask, yes.v, no.v);
   s.offset = hn::IfThenElse(mask, yes.offset, no.offset);
   s.slopes = if_then_else(mask, yes.slopes, no.slopes);
+  for (int k = 0; k < 4; ++k) s.footprint[k] = hn::IfThenElse(mask, yes.footprint[k], no.footprint[k]);
   return s;
 }
 

@@ -103,6 +103,9 @@ HWY_INLINE Surface triangle_surface(const World& world, const Vec3& origin, cons
     const VF uv_area = hn::MulSub(du1, dv2, hn::Mul(dv1, du2));
     const Vec3 along_u = (e1 * dv2 - e2 * dv1) * hn::CopySign(one, uv_area);
     surface.tangent = if_then_else(hn::Eq(uv_area, zero), make_frame(shading).s, along_u);
+    if (world.has_mips)
+      uv_footprint(world.camera, surface.position, surface.normal, linear_slopes({du1, dv1, du2, dv2}, e1, e2),
+                   surface.footprint);
     if (world.has_bumps) {
       if (world.has_instances)
         for (Vec3& normal : n) normal = if_then_else(placed, transform_normal(place.inverse, normal), normal);
@@ -175,12 +178,14 @@ HWY_INLINE Surface quadric_surface(const World& world, const Vec3& origin, const
   const MF pole = hn::Eq(hn::Add(hn::Abs(local.x), hn::Abs(local.y)), zero);
   surface.tangent = transform_vector(m, if_then_else(pole, Vec3{one, zero, zero}, along));
   if (world.needs_uvs()) quadric_uv(first, base, local, kind, surface);
-  if (world.has_bumps) {
+  if (world.has_bumps || world.has_mips) {
     // The normal of a sphere or cylinder turns as the point does; on a cylinder not along it.
     const VF bend = hn::Div(side, hn::Sqrt(dot(normal, normal)));
     const VF around = hn::IfThenElseZero(hn::Or(sphere, cylinder), bend), down = hn::IfThenElseZero(sphere, bend);
     const Slopes p = quadric_slopes(first, base, local, sphere, cylinder);
-    surface.slopes = {{transform_vector(m, p.along_u), transform_vector(m, p.along_v)},
+    const Slopes placed = {transform_vector(m, p.along_u), transform_vector(m, p.along_v)};
+    if (world.has_mips) uv_footprint(world.camera, surface.position, surface.normal, placed, surface.footprint);
+    surface.slopes = {placed,
                       {transform_normal(inverse, p.along_u) * around, transform_normal(inverse, p.along_v) * down}};
   }
   return surface;
@@ -293,6 +298,7 @@ void surface_kernel(const World& world, const PathStream& paths, const HitStream
       store(s.u, shade.uv[0], i);
       store(s.v, shade.uv[1], i);
     }
+    if (world.has_mips) store(s.footprint, shade.footprint, i);
     if (world.has_bumps) {
       store(s.slopes.position.along_u, shade.dp_du, i);
       store(s.slopes.position.along_v, shade.dp_dv, i);
@@ -330,9 +336,13 @@ SurfacePoint surface_point_kernel(const World& world, const RayHit& hit) {
   else
     s = quadric_surface(world, origin, direction, time, object, distance);
   const auto first = [](VF v) { return hn::GetLane(v); };
-  return {{first(s.u), first(s.v)},
-          {first(s.position.x), first(s.position.y), first(s.position.z)},
-          {first(s.normal.x), first(s.normal.y), first(s.normal.z)}};
+  SurfacePoint point = {{first(s.u), first(s.v)},
+                        {first(s.position.x), first(s.position.y), first(s.position.z)},
+                        {first(s.normal.x), first(s.normal.y), first(s.normal.z)},
+                        {}};
+  if (world.has_mips)
+    for (int k = 0; k < 4; ++k) point.footprint[k] = first(s.footprint[k]);
+  return point;
 }
 
 }  // namespace

@@ -96,6 +96,7 @@ struct RayHit {
 // What textures may ask about it.
 struct SurfacePoint {
   float uv[2], position[3], normal[3];
+  float footprint[4];  // ShadeStream's
 };
 SurfacePoint surface_point(const World& world, const RayHit& hit);
 // The value there of a program for numbers: alpha, or the amount of a mixture. The same whatever else is computed.

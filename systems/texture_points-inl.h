@@ -19,6 +19,7 @@ namespace metamer::HWY_NAMESPACE {
 struct TexturePoint {
   VF u, v;
   Vec3 position, normal;  // in the world; the normal is the geometric one
+  VF footprint[4];        // ShadeStream's; where the world has mips
   VF lambda_nm[4];
   PointKey key;
   uint32_t depth;

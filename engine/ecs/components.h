@@ -89,18 +89,18 @@ inline constexpr uint32_t largest_priority = 255;
 // `kappa` below refracting_kappa, GGX roughness. `alpha_x`, `alpha_y` are GGX slopes' widths (not remapped); below 1e-3
 // a mirror. smooth: `eta`, `kappa` of any size, on each wavelength a dielectric or a conductor as kappa decides.
 // `alpha_x_texture`, `alpha_y_texture`: numbers in the place of `alpha_x` and `alpha_y`, of a conductor or dielectric
-// that then is rough everywhere. A conductor's `reflectance_texture` stands for eta 1 and the kappa of that reflectance
-// along the normal. `displacement`: a number, metres along the normal, that bends the shading normal; so does
-// `normal_map`, whose red, green and blue are (1 + n) / 2 of a normal along dp/du, across it and along the normal.
-// `priority`: paths keep track of being inside (a dielectric with kappa and anything smooth has 1 at least); `eta` is
-// then against vacuum, and where solids overlap the one of the higher priority fills the space. `thin`: a slab of
-// `thickness` whose two faces are one surface; no inside. rough: diffuse `kd` plus Phong-Blinn `ks`, `shininess` (see
-// systems/bsdf/rough-inl.h); as taught, both in sr^-1 and without a bound, or `normalized`, both albedos.
-// coated: diffuse `reflectance` under a clear coat of index `eta` and one GGX width, alpha_x = alpha_y.
-// interface: nothing to see; only the media on its two sides differ.
-// layered: pbrt's coat (systems/bsdf/coat_layer.h): a surface of index `eta` and GGX roughness over a `layer` and a
-// `base`. diffuse_transmission: `reflectance` and `transmittance`, both lambertian. mix: of two other entities'
-// materials. hair: `eta` and what `hair` says.
+// that then is rough everywhere, or of a layered material. The `reflectance_texture` of a conductor, also of one under
+// a layer, stands for eta 1 and the kappa of that reflectance along the normal. `displacement`: a number, metres along
+// the normal, that bends the shading normal; so does `normal_map`, whose red, green and blue are (1 + n) / 2 of a
+// normal along dp/du, across it and along the normal. `priority`: paths keep track of being inside (a dielectric with
+// kappa and anything smooth has 1 at least); `eta` is then against vacuum, and where solids overlap the one of the
+// higher priority fills the space. `thin`: a slab of `thickness` whose two faces are one surface; no inside. rough:
+// diffuse `kd` plus Phong-Blinn `ks`, `shininess` (see systems/bsdf/rough-inl.h); as taught, both in sr^-1 and without
+// a bound, or `normalized`, both albedos. coated: diffuse `reflectance` under a clear coat of index `eta` and one GGX
+// width, alpha_x = alpha_y. interface: nothing to see; only the media on its two sides differ. layered: pbrt's coat
+// (systems/bsdf/coat_layer.h): a surface of index `eta` and GGX roughness over a `layer` and a `base`.
+// diffuse_transmission: `reflectance` and `transmittance`, both lambertian. mix: of two other entities' materials.
+// hair: `eta` and what `hair` says; `reflectance_texture`: the colour of much of it, in place of `sigma_a`.
 enum class LayerBase : uint32_t { diffuse, conductor };
 struct Layer {
   LayerBase base = LayerBase::diffuse;       // diffuse: the material's `reflectance`; conductor:
@@ -111,6 +111,9 @@ struct Layer {
   float asymmetry = 0;      // mean cosine of that scattering, -1 to 1
   uint32_t max_depth = 10;  // scatterings inside of the coat, one at a boundary included
   uint32_t walks = 1;       // averaged where the sum over ways through the layer is not closed
+  // In place of the numbers, and of `albedo`.
+  TextureId base_alpha_x_texture = no_index, base_alpha_y_texture = no_index;
+  TextureId thickness_texture = no_index, albedo_texture = no_index, asymmetry_texture = no_index;
 };
 struct Mix {
   Entity first, second;

@@ -37,6 +37,13 @@ struct Curves {
   Column<uint32_t> segments;  // the first of four points of each
 };
 
+// How integer channels of an image file are encoded: 0 as sRGB, else as the power `gamma` (1: linear).
+struct ImageEncoding {
+  double gamma = 0;
+  bool allows_negative = false;
+  bool decodes_alpha = false;  // like the colours; else alpha is linear
+};
+
 // Linear RGB, row by row from the top.
 struct Image {
   std::string name;
@@ -45,6 +52,11 @@ struct Image {
   std::vector<float> alpha;  // width * height, or none: 1 everywhere
   ImageMapping mapping = ImageMapping::latitude_longitude;
   ColorSpace color_space = ColorSpace::srgb;
+  // Too large for the memory that textures may take: there are no pixels here; they are those of the file `name`, to be
+  // read row by row (engine/files/image_rows.h).
+  bool is_in_file = false;
+  ImageEncoding encoding;       // of that file
+  bool file_has_alpha = false;  // that is not 1 everywhere
 };
 
 struct Filter {
@@ -133,6 +145,9 @@ struct Scene {
   std::vector<Grid> grids;
   NameTable names;
   RenderSettings settings;
+  // Bytes that the texels of textures may take; readers leave images in their files, the largest first, where all of
+  // them would take more.
+  uint64_t texture_memory = std::numeric_limits<uint64_t>::max();
 
   // "file:line" of an entity, as far as known.
   SourceLocation location(Entity entity) const {

@@ -2,6 +2,7 @@
 // as kernels run them (TextureSet: programs in postfix order over one stack, and all texels in one column).
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "engine/simd/column.h"
@@ -40,6 +41,12 @@ enum class TextureKind : uint32_t {
 };
 // What of a pixel a number is.
 enum class TextureChannel : uint32_t { average, red, green, blue, alpha };
+// Between the texels of an image, and which of its levels, each half as wide and high as the one before (level 0 is the
+// file): linear and nearest level 0; trilinear and anisotropic levels whose texels are as large as what a lookup stands
+// for (systems/footprint-inl.h), by its longest diameter or by its shortest one, but at least the longest one over
+// `most_anisotropy`.
+enum class TextureFilter : uint32_t { linear, nearest, trilinear, anisotropic };
+constexpr bool uses_levels(TextureFilter filter) { return filter >= TextureFilter::trilinear; }
 // octahedral: over the edge of a square that is an unfolded sphere, to where its faces touch.
 enum class TextureWrap : uint32_t { repeat, clamp, black, octahedral };
 
@@ -67,7 +74,8 @@ struct TextureOp {
   uint32_t image = 0;                                // ImageId; in programs a row of TextureSet::images
   TextureChannel channel = TextureChannel::average;  // of a number
   TextureWrap wrap = TextureWrap::repeat;
-  uint32_t nearest = 0;  // 1: the nearest texel, 0: linear between texels
+  TextureFilter filter = TextureFilter::linear;
+  float most_anisotropy = 8;  // at least 1
   uint32_t invert = 0;
   float scale = 1;
   TextureMapping mapping;
@@ -87,10 +95,16 @@ inline constexpr uint32_t deepest_texture_stack = 16;
 struct TextureProgram {
   uint32_t begin = 0, end = 0;  // of TextureSet::ops
 };
+// An image or a level of one. The levels of an image follow it, row by row.
 struct TextureImage {
   uint32_t first_texel = 0;  // of spectra in `texels`, of numbers and normals in `numbers`
   uint32_t width = 0, height = 0;
+  uint32_t levels = 1;  // from this row on
 };
+static_assert(sizeof(TextureImage) == 4 * sizeof(uint32_t));
+
+// Texels that stay in files: OpenImageIO's cache. Known to systems/texture_cache.* only.
+struct TextureCache;
 
 struct TextureSet {
   std::vector<TextureOp> ops;
@@ -101,6 +115,10 @@ struct TextureSet {
   Column<float> texels;                     // four per texel: the sigmoid's c0 c1 c2, and a factor on it; or as below
   bool has_coefficients = false;            // RGB mode: the texel's three coefficients and 0
   Column<float> numbers;                    // one per texel
+  // Levels whose texels are looked up in the cache: by row of images and of normal_maps its place there, or no_index.
+  // Empty where there are none.
+  std::vector<uint32_t> image_files, normal_map_files;
+  std::unique_ptr<TextureCache, void (*)(TextureCache*)> cache{nullptr, nullptr};
   size_t bytes() const { return ops.size() * sizeof(TextureOp) + texels.bytes() + numbers.bytes(); }
 };
 

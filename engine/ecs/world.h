@@ -82,12 +82,17 @@ struct LayeredColumns {
   Column<uint32_t> reflectance, texture;     // of a diffuse base, as CoatedColumns
   Column<uint32_t> base_eta, base_kappa;     // SpectrumId, against vacuum
   Column<float> base_alpha_x, base_alpha_y;  // 0 where smooth
+  // Programs of TextureSet in their place, or no_index. `texture` is also a conductor's, as in ConductorColumns.
+  Column<uint32_t> alpha_texture[2], base_alpha_texture[2];
+  Column<uint32_t> thickness_texture, asymmetry_texture, albedo_texture;
 };
 // See systems/bsdf/hair.h.
 struct HairColumns {
   Column<float> eta, variance, width;
   std::array<Column<float>, 3> sin_tilt, cos_tilt;
-  Column<uint32_t> sigma_a;  // SpectrumId
+  Column<uint32_t> sigma_a;         // SpectrumId
+  Column<uint32_t> texture;         // program of TextureSet, no_index: none. Its colour stands for sigma_a
+  Column<float> absorption_of_log;  // sigma_a = (that times log(colour))^2
 };
 struct ConductorColumns {
   Column<uint32_t> eta, kappa;  // SpectrumId
@@ -129,7 +134,7 @@ struct VolumeColumns {
   Column<uint32_t> emission;          // SpectrumId, W m^-2 sr^-1 nm^-1, times `emission_scale`
   Column<float> scale, emission_scale, g, g2, g2_share;
   Column<uint32_t> scatters;  // 0: rays go straight through, whatever is absorbed on the way
-  Column<uint32_t> grid;      // row of World::grid_volumes: the coefficients are multiplied by grids; no_index: they hold
+  Column<uint32_t> grid;  // row of World::grid_volumes: the coefficients are multiplied by grids; no_index: they hold
 };
 inline constexpr uint32_t keeps_volume = 0xffffffffu;
 // Beside those of component Visibility: shadow rays that look for the interfaces on their way.
@@ -240,6 +245,8 @@ struct CameraRow {
   float forward[3] = {};  // unit depth along the camera's axis, for the plane of focus
   ImageMapping mapping = ImageMapping::latitude_longitude;  // spherical only
   float x_step = 0, y_step = 0;
+  // How wide a texture lookup is: radians seen from `origin`, plus metres. The camera as the shutter opens.
+  float footprint_angle = 0, footprint_width = 0;
 };
 // What of a CameraRow moves, in its order; interpolated linearly like MotionKey.
 struct CameraKey {
@@ -317,14 +324,16 @@ struct World {
   bool has_instances = false;   // some triangles are in their object's space
   bool has_quadrics = false;
   bool has_curves = false;
-  bool has_motion = false;          // some objects move: paths carry their time
-  bool has_interiors = false;       // some material is followed: paths carry their media
-  bool has_volumes = false;         // volumes other than the empty one, or interfaces: paths carry what they are in
-  bool has_interfaces = false;      // surfaces of ShadeKind::interface
-  bool has_grids = false;           // some volume varies in space: shadow rays carry the keys of their paths
-  bool shares_paths = false;        // free paths differ between wavelengths: paths carry their shares (PathStream)
-  bool has_textured_alpha = false;  // some roughness varies
+  bool has_motion = false;           // some objects move: paths carry their time
+  bool has_interiors = false;        // some material is followed: paths carry their media
+  bool has_volumes = false;          // volumes other than the empty one, or interfaces: paths carry what they are in
+  bool has_interfaces = false;       // surfaces of ShadeKind::interface
+  bool has_grids = false;            // some volume varies in space: shadow rays carry the keys of their paths
+  bool shares_paths = false;         // free paths differ between wavelengths: paths carry their shares (PathStream)
+  bool has_textured_alpha = false;   // some roughness varies
+  bool has_textured_layers = false;  // some layer has textures beside its reflectance
   bool has_bumps = false;
+  bool has_mips = false;          // some texture chooses between levels
   bool has_masks = false;         // some object's alpha is not 1
   bool has_portals = false;       // some environment's light depends on where a ray that leaves the scene came from
   bool has_shape_images = false;  // some shape emits an image

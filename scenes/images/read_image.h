@@ -6,13 +6,6 @@
 
 namespace metamer {
 
-// How integer channels are encoded: 0 as sRGB, else as the power `gamma` (1: linear).
-struct ImageEncoding {
-  double gamma = 0;
-  bool allows_negative = false;
-  bool decodes_alpha = false;  // like the colours; else alpha is linear
-};
-
 // How the images of textures are read: they may be negative, and as in pbrt the alpha of PNG files is encoded.
 ImageEncoding texture_encoding(const std::string& path);
 
@@ -22,7 +15,8 @@ ImageEncoding texture_encoding(const std::string& path);
 // chromaticities an EXR file names. False after reporting what is wrong: at
 // `named_at` if the file cannot be read, else at the file itself, also where a pixel is not finite, or negative and
 // should not be.
+enum class Pixels : uint8_t { kept, left_in_file };  // the latter are read and checked all the same
 bool read_image(const std::string& path, const SourceLocation& named_at, Image& image, Diagnostics& diagnostics,
-                const ImageEncoding& encoding = {});
+                const ImageEncoding& encoding = {}, Pixels pixels = Pixels::kept);
 
 }  // namespace metamer

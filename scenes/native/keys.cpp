@@ -24,7 +24,7 @@ constexpr KeySpec texture_reference[] = {{"texture", required}};
 constexpr KeySpec texture_constant[] = {{"type", required}, {"value", required}, {"number"}};
 constexpr KeySpec texture_image[] = {{"type", required}, {"image", required}, {"encoding"}, {"space"},
                                      {"wrap"},           {"filter"},          {"scale"},    {"invert"},
-                                     {"mapping"},        {"number"},          {"channel"}};
+                                     {"mapping"},        {"number"},          {"channel"},  {"anisotropy"}};
 constexpr KeySpec texture_checkerboard[] = {{"type", required}, {"a"}, {"b"}, {"mapping"}, {"number"}};
 constexpr KeySpec texture_scale[] = {{"type", required}, {"a", required}, {"b"}, {"number"}};
 constexpr KeySpec texture_mix[] = {{"type", required}, {"a", required}, {"b", required}, {"amount"}, {"number"}};
@@ -47,14 +47,14 @@ constexpr KeySpec material_coated[] = {
     {"type", required}, {"reflectance", required}, {"glass"},     {"eta"}, {"roughness"},
     {"fresnel"},        {"displacement"},          {"normal_map"}};
 constexpr KeySpec material_layered[] = {
-    {"type", required}, {"reflectance"}, {"base_metal"},   {"base_eta"},          {"base_kappa"}, {"base_roughness"},
-    {"glass"},          {"eta"},         {"roughness"},    {"optical_thickness"}, {"albedo"},     {"asymmetry"},
-    {"max_depth"},      {"walks"},       {"displacement"}, {"normal_map"}};
+    {"type", required}, {"reflectance"},     {"base_metal"}, {"base_eta"},  {"base_kappa"},
+    {"base_roughness"}, {"glass"},           {"eta"},        {"roughness"}, {"optical_thickness"},
+    {"albedo"},         {"asymmetry"},       {"max_depth"},  {"walks"},     {"displacement"},
+    {"normal_map"},     {"base_reflectance"}};
 constexpr KeySpec material_diffuse_transmission[] = {
     {"type", required}, {"reflectance", required}, {"transmittance", required}, {"displacement"}, {"normal_map"}};
-constexpr KeySpec material_hair[] = {
-    {"type", required}, {"sigma_a", required}, {"beta_m"}, {"beta_n"}, {"tilt"}, {"eta"},
-    {"displacement"},   {"normal_map"}};
+constexpr KeySpec material_hair[] = {{"type", required}, {"sigma_a"}, {"reflectance"},  {"beta_m"},    {"beta_n"},
+                                     {"tilt"},           {"eta"},     {"displacement"}, {"normal_map"}};
 constexpr KeySpec material_mix[] = {{"type", required}, {"first", required}, {"second", required}, {"amount"}};
 constexpr KeySpec material_conductor[] = {{"type", required}, {"metal"},      {"eta"},
                                           {"kappa"},          {"roughness"},  {"fresnel"},

@@ -7,6 +7,7 @@
 #include "scenes/native/components.h"
 #include "scenes/native/spectra.h"
 #include "scenes/native/varying.h"
+#include "systems/bsdf/hair.h"
 #include "systems/bsdf/limits.h"
 
 namespace metamer {
@@ -28,30 +29,35 @@ void read_widths(const SceneContext& context, const JsonObject& object, std::str
   alpha_x = static_cast<float>(alpha[0]);
   alpha_y = static_cast<float>(alpha[1]);
 }
-void read_roughness(const SceneContext& context, const JsonObject& object, Material& material) {
-  read_widths(context, object, "roughness", material.alpha_x, material.alpha_y);
-}
 
 // The same where each of them may be a texture.
-void read_varying_roughness(SceneContext& context, const JsonObject& object, Material& material) {
-  const Json::Value* value = object.find("roughness");
+struct Widths {
+  float &alpha_x, &alpha_y;
+  TextureId &x_texture, &y_texture;
+};
+void read_varying_widths(SceneContext& context, const JsonObject& object, std::string_view key, Widths widths) {
+  const Json::Value* value = object.find(key);
   const bool is_pair = value != nullptr && value->isArray() && value->size() == 2;
   const bool varies =
       value != nullptr && (is_texture(*value) || (is_pair && (is_texture((*value)[0]) || is_texture((*value)[1]))));
-  if (!varies) return read_roughness(context, object, material);
-  const NumberOrTexture x = read_number_or_texture(context, is_pair ? (*value)[0] : *value, "roughness", not_negative);
-  const NumberOrTexture y = is_pair ? read_number_or_texture(context, (*value)[1], "roughness", not_negative) : x;
-  material.alpha_x = x.number;
-  material.alpha_y = y.number;
-  material.alpha_x_texture = x.texture;
-  material.alpha_y_texture = y.texture;
+  if (!varies) return read_widths(context, object, key, widths.alpha_x, widths.alpha_y);
+  const NumberOrTexture x = read_number_or_texture(context, is_pair ? (*value)[0] : *value, key, not_negative);
+  const NumberOrTexture y = is_pair ? read_number_or_texture(context, (*value)[1], key, not_negative) : x;
+  widths.alpha_x = x.number;
+  widths.alpha_y = y.number;
+  widths.x_texture = x.texture;
+  widths.y_texture = y.texture;
+}
+void read_varying_roughness(SceneContext& context, const JsonObject& object, Material& material) {
+  read_varying_widths(context, object, "roughness",
+                      {material.alpha_x, material.alpha_y, material.alpha_x_texture, material.alpha_y_texture});
 }
 
 // A spectrum, or a texture in its place.
 void read_albedo(SceneContext& context, const JsonObject& object, std::string_view key, SpectrumId& spectrum,
                  TextureId& texture) {
   const Json::Value* value = object.find(key);
-  if (value == nullptr) return;  // reported
+  if (value == nullptr) return;  // reported, or of no effect
   if (is_texture(*value))
     texture = read_texture_reference(context, *value, false).value_or(no_index);
   else
@@ -90,11 +96,12 @@ void read_index(SceneContext& context, const JsonObject& object, std::string_vie
 }
 
 // The metal of index 1 + i kappa that reflects so much along the normal, as a spectrum or a texture.
-void read_metal_reflectance(SceneContext& context, const Json::Value& value, Material& material) {
+void read_metal_reflectance(SceneContext& context, const Json::Value& value, SpectrumId& eta, SpectrumId& kappa_id,
+                            TextureId& texture) {
   SpectrumSet& spectra = context.scene.spectra;
-  material.eta = unit_spectrum;
+  eta = unit_spectrum;
   if (is_texture(value)) {
-    material.reflectance_texture = read_texture_reference(context, value, false).value_or(no_index);
+    texture = read_texture_reference(context, value, false).value_or(no_index);
     return;
   }
   Samples kappa = spectra.samples(read_spectrum(context, value, "reflectance", Quantity::reflectance));
@@ -102,13 +109,15 @@ void read_metal_reflectance(SceneContext& context, const Json::Value& value, Mat
     const double r = std::clamp(sample, 0.0, 0.9999);
     sample = 2 * std::sqrt(r / (1 - r));
   }
-  material.kappa = spectra.add_samples(kappa).id;
+  kappa_id = spectra.add_samples(kappa).id;
 }
 
 void read_conductor(SceneContext& context, const JsonObject& object, Material& material) {
   constexpr std::string_view ways[] = {"metal", "eta", "reflectance"};
   read_index(context, object, "eta", ways, material);
-  if (object.has("reflectance")) read_metal_reflectance(context, *object.find("reflectance"), material);
+  if (object.has("reflectance"))
+    read_metal_reflectance(context, *object.find("reflectance"), material.eta, material.kappa,
+                           material.reflectance_texture);
   if (object.has("reflectance") && object.has("kappa"))
     context.reader.error(*object.find("kappa"), "'reflectance' and 'kappa' exclude each other");
   if (object.has("eta") && !object.has("kappa"))
@@ -200,9 +209,12 @@ void read_mix(SceneContext& context, const JsonObject& object, Material& materia
 // What is under the layer: a diffuse albedo, or a metal.
 void read_base(SceneContext& context, const JsonObject& object, Material& material) {
   Layer& layer = material.layer;
-  constexpr std::string_view bases[] = {"reflectance", "base_metal", "base_eta"};
+  constexpr std::string_view bases[] = {"reflectance", "base_metal", "base_eta", "base_reflectance"};
   const std::string_view base = object.one_of(bases);
   if (base == "reflectance") read_reflectance(context, object, material);
+  if (base == "base_reflectance") {
+    read_metal_reflectance(context, *object.find(base), layer.base_eta, layer.base_kappa, material.reflectance_texture);
+  }
   if (base == "base_metal") {
     const MetalSpectra metal = read_metal(context, *object.find("base_metal"));
     layer.base_eta = metal.eta;
@@ -219,9 +231,11 @@ void read_base(SceneContext& context, const JsonObject& object, Material& materi
   for (const std::string_view key : {"base_kappa", "base_roughness"})
     if (base == "reflectance" && object.has(key))
       context.reader.error(*object.find(key), fmt::format("'reflectance' and '{}' exclude each other", key));
-  if (base == "base_metal" && object.has("base_kappa"))
-    context.reader.error(*object.find("base_kappa"), "'base_metal' and 'base_kappa' exclude each other");
-  read_widths(context, object, "base_roughness", layer.base_alpha_x, layer.base_alpha_y);
+  for (const std::string_view other : {"base_metal", "base_reflectance"})
+    if (base == other && object.has("base_kappa"))
+      context.reader.error(*object.find("base_kappa"), fmt::format("'{}' and 'base_kappa' exclude each other", other));
+  read_varying_widths(context, object, "base_roughness",
+                      {layer.base_alpha_x, layer.base_alpha_y, layer.base_alpha_x_texture, layer.base_alpha_y_texture});
 }
 
 // pbrt's coat.
@@ -233,23 +247,37 @@ void read_layered(SceneContext& context, const JsonObject& object, Material& mat
   const std::string_view way = object.one_of(ways);
   if (way == "glass") material.eta = read_glass(context, *object.find("glass"));
   if (way == "eta") material.eta = read_spectrum(context, *object.find("eta"), "eta", Quantity::eta);
-  read_roughness(context, object, material);
+  read_varying_roughness(context, object, material);
   Layer& layer = material.layer;
-  layer.thickness = static_cast<float>(object.number("optical_thickness", not_negative, double{layer.thickness}));
+  const auto varying = [&](std::string_view key, const Range& range, float& number, TextureId& texture) {
+    if (!object.has(key)) return;
+    const NumberOrTexture read = read_number_or_texture(context, *object.find(key), key, range);
+    number = read.number;
+    texture = read.texture;
+  };
+  varying("optical_thickness", not_negative, layer.thickness, layer.thickness_texture);
+  varying("asymmetry", {-1, 1, true, true}, layer.asymmetry, layer.asymmetry_texture);
   layer.max_depth = object.integer("max_depth", 0, most, layer.max_depth);
   layer.walks = object.integer("walks", 1, most, layer.walks);
-  layer.asymmetry = static_cast<float>(object.number("asymmetry", Range{-1, 1, true, true}, 0));
-  if (object.has("albedo"))
-    layer.albedo = read_spectrum(context, *object.find("albedo"), "albedo", Quantity::reflectance);
+  read_albedo(context, object, "albedo", layer.albedo, layer.albedo_texture);
 }
 
 // A fibre along the tangent; v goes across it.
 void read_hair(SceneContext& context, const JsonObject& object, Material& material) {
   material.kind = MaterialKind::hair;
   Hair& hair = material.hair;
-  if (object.has("sigma_a")) hair.sigma_a = read_spectrum(context, *object.find("sigma_a"), "sigma_a", Quantity::kappa);
+  constexpr std::string_view ways[] = {"sigma_a", "reflectance"};
+  const std::string_view way = object.one_of(ways);
+  if (way == "sigma_a") hair.sigma_a = read_spectrum(context, *object.find(way), way, Quantity::kappa);
   hair.beta_m = static_cast<float>(object.number("beta_m", unit_interval, double{hair.beta_m}));
   hair.beta_n = static_cast<float>(object.number("beta_n", unit_interval, double{hair.beta_n}));
+  if (way == "reflectance") {
+    SpectrumId color = zero_spectrum;
+    read_albedo(context, object, way, color, material.reflectance_texture);
+    Samples samples = context.scene.spectra.samples(color);
+    for (double& sample : samples) sample = hair_absorption_of_reflectance(sample, double{hair.beta_n});
+    if (material.reflectance_texture == no_index) hair.sigma_a = context.scene.spectra.add_samples(samples).id;
+  }
   hair.tilt_deg = static_cast<float>(object.number("tilt", Range{-20, 20}, double{hair.tilt_deg}));
   material.eta = context.scene.spectra.add_constant(object.number("eta", Range{1, largest_float}, 1.55)).id;
 }

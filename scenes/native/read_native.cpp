@@ -1,6 +1,7 @@
 #include "scenes/native/read_native.h"
 
 #include "scenes/gzip.h"
+#include "scenes/images/texture_memory.h"
 #include "scenes/native/components.h"
 #include "scenes/native/entities.h"
 #include "scenes/native/settings.h"
@@ -29,6 +30,7 @@ void read_scene_object(SceneContext& context, const Json::Value& root) {
   if (const Json::Value* media = object.find("media")) read_media(context, *media);
   if (const Json::Value* entities = object.find("entities")) read_entities(context, *entities);
   check_unused_spectra(context);
+  if (!reader.diagnostics().has_errors()) read_images_that_fit(context.scene, reader.diagnostics());
 }
 
 }  // namespace

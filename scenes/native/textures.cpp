@@ -11,8 +11,9 @@ namespace {
 
 // In the order of the enumerations.
 constexpr std::string_view wrap_names[] = {"repeat", "clamp", "black", "octahedral"};
-constexpr std::string_view filter_names[] = {"linear", "nearest"};
+constexpr std::string_view filter_names[] = {"linear", "nearest", "trilinear", "anisotropic"};
 constexpr uint32_t most_texture_octaves = 64;  // beyond, a cell of the noise is smaller than a float can tell
+constexpr Range at_least_one{1, largest_float};
 constexpr std::string_view axis_names[] = {"u", "v", "w"};
 
 // Functions of the place without operands.
@@ -182,7 +183,11 @@ class TextureReader {
   void image() {
     texture_.kind = TextureKind::image;
     texture_.wrap = static_cast<TextureWrap>(object_.choice("wrap", wrap_names, 0));
-    texture_.nearest = static_cast<uint32_t>(object_.choice("filter", filter_names, 0));
+    texture_.filter = static_cast<TextureFilter>(
+        object_.choice("filter", filter_names, static_cast<size_t>(TextureFilter::anisotropic)));
+    texture_.most_anisotropy = object_.number_f("anisotropy", at_least_one, 8);
+    if (object_.has("anisotropy") && texture_.filter != TextureFilter::anisotropic)
+      reader_.error(*object_.find("anisotropy"), "'anisotropy' goes with the filter 'anisotropic' only");
     texture_.channel = static_cast<TextureChannel>(object_.choice("channel", channel_names, 0));
     if (object_.has("channel") && texture_.is_number == 0)
       reader_.error(*object_.find("channel"), "'channel' goes with 'number' only: reflectances have all colours");
@@ -213,7 +218,7 @@ class TextureReader {
     if (object_.has("space")) space = static_cast<ColorSpace>(object_.choice("space", color_space_names(), 0));
     if (!object_.has("image")) return std::nullopt;  // reported
     const auto id = read_shared_image(context_, *object_.find("image"), "image", exponent, space);
-    if (id && texture_.channel == TextureChannel::alpha && context_.scene.images[*id].alpha.empty())
+    if (id && texture_.channel == TextureChannel::alpha && !context_.scene.images[*id].file_has_alpha)
       reader_.error(*object_.find("channel"), "the image has no alpha, or one that is 1 everywhere");
     return id;
   }

@@ -1,6 +1,6 @@
 #include "scenes/native/varying.h"
 
-#include "scenes/images/read_image.h"
+#include "scenes/images/texture_memory.h"
 #include "scenes/native/components.h"
 
 namespace metamer {
@@ -46,7 +46,8 @@ std::optional<ImageId> read_shared_image(SceneContext& context, const Json::Valu
   Image image;
   ImageEncoding encoding = texture_encoding(path);
   encoding.gamma = gamma;
-  if (!read_image(path, context.reader.document().at(file), image, context.reader.diagnostics(), encoding))
+  if (!read_image(path, context.reader.document().at(file), image, context.reader.diagnostics(), encoding,
+                  pixels_of_textures(context.scene)))
     return std::nullopt;
   image.color_space = space.value_or(image.color_space);
   context.scene.images.push_back(std::move(image));

@@ -99,16 +99,25 @@ class MaterialWriter {
     switch (layer.base) {
       case LayerBase::diffuse: reflectance(); break;
       case LayerBase::conductor:
-        spectrum("base_eta", layer.base_eta);
-        spectrum("base_kappa", layer.base_kappa);
-        widths("base_roughness", layer.base_alpha_x, layer.base_alpha_y);
+        if (material_.reflectance_texture != no_index) {
+          object_.add("base_reflectance", context_.texture(material_.reflectance_texture));
+        } else {
+          spectrum("base_eta", layer.base_eta);
+          spectrum("base_kappa", layer.base_kappa);
+        }
+        varying_widths("base_roughness", layer.base_alpha_x, layer.base_alpha_y, layer.base_alpha_x_texture,
+                       layer.base_alpha_y_texture);
         break;
     }
     spectrum("eta", material_.eta);
-    widths("roughness", material_.alpha_x, material_.alpha_y);
-    object_.add("optical_thickness", JsonText::number(layer.thickness));
-    if (layer.albedo != zero_spectrum) spectrum("albedo", layer.albedo);
-    if (layer.asymmetry != 0) object_.add("asymmetry", JsonText::number(layer.asymmetry));
+    roughness();
+    object_.add("optical_thickness", number_or_texture(layer.thickness, layer.thickness_texture));
+    if (layer.albedo_texture != no_index)
+      object_.add("albedo", context_.texture(layer.albedo_texture));
+    else if (layer.albedo != zero_spectrum)
+      spectrum("albedo", layer.albedo);
+    if (layer.asymmetry != 0 || layer.asymmetry_texture != no_index)
+      object_.add("asymmetry", number_or_texture(layer.asymmetry, layer.asymmetry_texture));
     object_.add("max_depth", JsonText::integer(layer.max_depth));
     object_.add("walks", JsonText::integer(layer.walks));
     return object_;
@@ -117,7 +126,10 @@ class MaterialWriter {
   JsonText hair() {
     const Hair& hair = material_.hair;
     type("hair");
-    spectrum("sigma_a", hair.sigma_a);
+    if (material_.reflectance_texture != no_index)
+      reflectance();
+    else
+      spectrum("sigma_a", hair.sigma_a);
     object_.add("beta_m", JsonText::number(hair.beta_m));
     object_.add("beta_n", JsonText::number(hair.beta_n));
     object_.add("tilt", JsonText::number(hair.tilt_deg));
@@ -150,13 +162,12 @@ class MaterialWriter {
     return texture != no_index ? context_.texture(texture) : JsonText::number(number);
   }
   void roughness() {
-    if (material_.alpha_x_texture != no_index || material_.alpha_y_texture != no_index) {
-      object_.add("roughness", JsonText::array()
-                                   .add(number_or_texture(material_.alpha_x, material_.alpha_x_texture))
-                                   .add(number_or_texture(material_.alpha_y, material_.alpha_y_texture)));
-      return;
-    }
-    widths("roughness", material_.alpha_x, material_.alpha_y);
+    varying_widths("roughness", material_.alpha_x, material_.alpha_y, material_.alpha_x_texture,
+                   material_.alpha_y_texture);
+  }
+  void varying_widths(std::string_view key, float x, float y, TextureId x_texture, TextureId y_texture) {
+    if (x_texture == no_index && y_texture == no_index) return widths(key, x, y);
+    object_.add(key, JsonText::array().add(number_or_texture(x, x_texture)).add(number_or_texture(y, y_texture)));
   }
   void widths(std::string_view key, float x, float y) {
     if (x == 0 && y == 0) return;

@@ -15,6 +15,16 @@ std::string_view wrap_name(TextureWrap wrap) {
   return {};
 }
 
+std::string_view filter_name(TextureFilter filter) {
+  switch (filter) {
+    case TextureFilter::linear: return "linear";
+    case TextureFilter::nearest: return "nearest";
+    case TextureFilter::trilinear: return "trilinear";
+    case TextureFilter::anisotropic: return "anisotropic";
+  }
+  return {};
+}
+
 std::string_view channel_name(TextureChannel channel) {
   switch (channel) {
     case TextureChannel::average: return "average";
@@ -143,7 +153,10 @@ class TextureWriter {
     // Without it the file's own counts.
     object_.add("space", JsonText::string(color_space_name(context_.scene.images[texture_.image].color_space)));
     if (texture_.wrap != TextureWrap::repeat) object_.add("wrap", JsonText::string(wrap_name(texture_.wrap)));
-    if (texture_.nearest != 0) object_.add("filter", JsonText::string("nearest"));
+    if (texture_.filter != TextureFilter::anisotropic)
+      object_.add("filter", JsonText::string(filter_name(texture_.filter)));
+    else if (texture_.most_anisotropy != 8)
+      object_.add("anisotropy", JsonText::number(texture_.most_anisotropy));
     if (texture_.scale != 1) object_.add("scale", JsonText::number(texture_.scale));
     if (texture_.invert != 0) object_.add("invert", JsonText::boolean(true));
     if (texture_.channel != TextureChannel::average)

@@ -24,19 +24,31 @@ SpectrumId of_reflectance(SpectrumSet& spectra, SpectrumId reflectance, double b
   return spectra.add_samples(samples).id;
 }
 
-SpectrumId read_absorption(Reader& reader, Parameters& parameters, double beta_n) {
+SpectrumId read_absorption(Reader& reader, Parameters& parameters, double beta_n, TextureId& color_texture) {
   SpectrumSet& spectra = reader.scene.spectra;
+  const auto texture = [&](std::string_view name) {
+    if (!parameters.is_texture(name)) return false;
+    const TextureId read = read_texture_parameter(reader, parameters, name, false).value_or(no_index);
+    if (color_texture == no_index) color_texture = read;
+    return true;
+  };
+  const bool has_textures[] = {texture("reflectance"), texture("color")};
   const auto sigma_a = read_spectrum(reader, parameters, "sigma_a", RgbKind::unbounded, SpectrumAlso::texture);
-  const auto reflectance = read_spectrum(reader, parameters, "reflectance", RgbKind::albedo, SpectrumAlso::texture);
-  const auto color = read_spectrum(reader, parameters, "color", RgbKind::albedo, SpectrumAlso::texture);
+  const auto color_of = [&](std::string_view name, bool is_texture) {
+    return is_texture ? std::nullopt : read_spectrum(reader, parameters, name, RgbKind::albedo, SpectrumAlso::texture);
+  };
+  const auto reflectance = color_of("reflectance", has_textures[0]), color = color_of("color", has_textures[1]);
   const bool has_pigments = parameters.has("eumelanin") || parameters.has("pheomelanin");
   const double eumelanin = std::max(0.0, read_real_or_texture(reader, parameters, "eumelanin", has_pigments ? 0 : 1.3));
   const double pheomelanin = std::max(0.0, read_real_or_texture(reader, parameters, "pheomelanin", 0));
-  const int ways = (sigma_a ? 1 : 0) + (reflectance || color ? 1 : 0) + (has_pigments ? 1 : 0);
+  const int ways =
+      (sigma_a ? 1 : 0) + (reflectance || color || color_texture != no_index ? 1 : 0) + (has_pigments ? 1 : 0);
   if (ways > 1)
     reader.messages.warning(parameters.source(),
                             "material \"hair\": of 'sigma_a', 'reflectance' or 'color', and pigments the first counts");
+  if (sigma_a || reflectance) color_texture = no_index;
   if (sigma_a) return sigma_a->id;
+  if (color_texture != no_index) return zero_spectrum;
   if (reflectance) return of_reflectance(spectra, reflectance->id, beta_n);
   if (color) return of_reflectance(spectra, color->id, beta_n);
   return of_pigments(spectra, eumelanin, pheomelanin);
@@ -55,7 +67,7 @@ void read_hair(Reader& reader, Parameters& parameters, Material& material) {
   hair.beta_m = unit("beta_m", 0.3);
   hair.beta_n = unit("beta_n", 0.3);
   hair.tilt_deg = static_cast<float>(read_real_or_texture(reader, parameters, "alpha", 2));
-  hair.sigma_a = read_absorption(reader, parameters, double{hair.beta_n});
+  hair.sigma_a = read_absorption(reader, parameters, double{hair.beta_n}, material.reflectance_texture);
   material.eta = reader.scene.spectra.add_constant(read_real_or_texture(reader, parameters, "eta", 1.55)).id;
 }
 

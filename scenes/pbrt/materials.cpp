@@ -13,24 +13,12 @@ constexpr std::string_view material_kinds[] = {
     "diffuse", "conductor", "dielectric", "coateddiffuse", "coatedconductor", "diffusetransmission",
     "hair",    "interface", "measured",   "mix",           "subsurface",      "thindielectric"};
 
-// Of materials whose widths may be textures.
 void read_roughness(Reader& reader, Parameters& parameters, Material& material) {
-  const NumberOrTexture both = read_number_or_texture(reader, parameters, "roughness", 0);
-  const bool remap = parameters.boolean("remaproughness", true);
-  if (both.number < 0) parameters.error("roughness", "roughness must not be negative");
-  const auto read = [&](std::string_view name, float& alpha, TextureId& texture) {
-    const NumberOrTexture own =
-        parameters.has(name) ? read_number_or_texture(reader, parameters, name, both.number) : both;
-    if (own.number < 0 && parameters.has(name)) parameters.error(name, "roughness must not be negative");
-    const double roughness = std::max(own.number, 0.0);
-    alpha = static_cast<float>(remap ? std::sqrt(roughness) : roughness);
-    texture = remap && own.texture != no_index ? square_root_of(reader, own.texture) : own.texture;
-  };
-  read("uroughness", material.alpha_x, material.alpha_x_texture);
-  if (both.texture != no_index && !parameters.has("uroughness") && !parameters.has("vroughness"))
-    material.alpha_y_texture = material.alpha_x_texture;
-  else
-    read("vroughness", material.alpha_y, material.alpha_y_texture);
+  const Widths widths = read_widths(reader, parameters, "", ConstantTextures::kept);
+  material.alpha_x = widths.alpha_x;
+  material.alpha_y = widths.alpha_y;
+  material.alpha_x_texture = widths.x_texture;
+  material.alpha_y_texture = widths.y_texture;
 }
 
 SpectrumId spectrum_or(const std::optional<SpectrumValue>& value, SpectrumId fallback) {
@@ -54,16 +42,10 @@ SpectrumId kappa_of_reflectance(SpectrumSet& spectra, SpectrumId reflectance) {
 
 void read_conductor(Reader& reader, Parameters& parameters, Material& material) {
   material.kind = MaterialKind::conductor;
-  if (parameters.is_texture("reflectance")) {
-    for (const std::string_view name : {"eta", "k"})
-      if (parameters.has(name)) parameters.error(name, fmt::format("'reflectance' and '{}' exclude each other", name));
-    material.reflectance_texture = read_texture_parameter(reader, parameters, "reflectance", false).value_or(no_index);
-    material.eta = unit_spectrum;
-  } else {
-    const MetalIndex metal = read_metal(reader, parameters, "");
-    material.eta = metal.eta;
-    material.kappa = metal.kappa;
-  }
+  const MetalIndex metal = read_metal(reader, parameters, "");
+  material.eta = metal.eta;
+  material.kappa = metal.kappa;
+  material.reflectance_texture = metal.reflectance_texture;
   read_roughness(reader, parameters, material);
 }
 
@@ -95,20 +77,37 @@ void read_unsupported(Reader& reader, std::string_view kind, Parameters& paramet
 
 }  // namespace
 
-Widths read_widths(Reader& reader, Parameters& parameters, std::string_view prefix, double fallback) {
+NumberOrTexture without_constants(const Reader& reader, NumberOrTexture value) {
+  if (value.texture == no_index) return value;
+  const Texture& texture = reader.scene.textures[value.texture];
+  return texture.kind == TextureKind::constant ? NumberOrTexture{double{texture.value}, no_index} : value;
+}
+
+Widths read_widths(Reader& reader, Parameters& parameters, std::string_view prefix, ConstantTextures constants) {
   const auto name_of = [&](std::string_view name) { return std::string(prefix).append(name); };
-  const std::string both_name = name_of("roughness");
-  const double both = read_real_or_texture(reader, parameters, both_name, fallback);
+  const std::string both_name = name_of("roughness"), u_name = name_of("uroughness"), v_name = name_of("vroughness");
+  const auto value_of = [&](const std::string& name, double fallback) {
+    const NumberOrTexture value = read_number_or_texture(reader, parameters, name, fallback);
+    return constants == ConstantTextures::kept ? value : without_constants(reader, value);
+  };
+  const NumberOrTexture both = value_of(both_name, 0);
   const bool remap = parameters.boolean("remaproughness", true);
-  if (both < 0) parameters.error(both_name, "roughness must not be negative");
-  const auto alpha = [&](const std::string& name) {
-    const double roughness = read_real_or_texture(reader, parameters, name, both);
-    if (roughness < 0 && parameters.has(name)) parameters.error(name, "roughness must not be negative");
-    return static_cast<float>(remap ? std::sqrt(std::max(roughness, 0.0)) : std::max(roughness, 0.0));
+  if (both.number < 0) parameters.error(both_name, "roughness must not be negative");
+  const auto read = [&](const std::string& name, float& alpha, TextureId& texture) {
+    const NumberOrTexture own = parameters.has(name) ? value_of(name, both.number) : both;
+    if (own.number < 0 && parameters.has(name)) parameters.error(name, "roughness must not be negative");
+    const double roughness = std::max(own.number, 0.0);
+    alpha = static_cast<float>(remap ? std::sqrt(roughness) : roughness);
+    texture = remap && own.texture != no_index ? square_root_of(reader, own.texture) : own.texture;
   };
   Widths widths;
-  widths.alpha_x = alpha(name_of("uroughness"));
-  widths.alpha_y = alpha(name_of("vroughness"));
+  read(u_name, widths.alpha_x, widths.x_texture);
+  if (both.texture != no_index && !parameters.has(u_name) && !parameters.has(v_name)) {
+    widths.alpha_y = widths.alpha_x;
+    widths.y_texture = widths.x_texture;
+  } else {
+    read(v_name, widths.alpha_y, widths.y_texture);
+  }
   return widths;
 }
 
@@ -135,14 +134,20 @@ SpectrumId read_index(Reader& reader, Parameters& parameters, std::string_view n
 MetalIndex read_metal(Reader& reader, Parameters& parameters, std::string_view prefix) {
   SpectrumSet& spectra = reader.scene.spectra;
   const std::string eta_name = std::string(prefix).append("eta"), k_name = std::string(prefix).append("k");
+  if (parameters.is_texture("reflectance")) {
+    for (const std::string& name : {eta_name, k_name})
+      if (parameters.has(name)) parameters.error(name, fmt::format("'reflectance' and '{}' exclude each other", name));
+    return {unit_spectrum, zero_spectrum,
+            read_texture_parameter(reader, parameters, "reflectance", false).value_or(no_index)};
+  }
   const auto eta = read_spectrum(reader, parameters, eta_name, RgbKind::unbounded, SpectrumAlso::texture);
   const auto kappa = read_spectrum(reader, parameters, k_name, RgbKind::unbounded, SpectrumAlso::texture);
   const auto reflectance = read_spectrum(reader, parameters, "reflectance", RgbKind::albedo, SpectrumAlso::texture);
   if (reflectance && (eta || kappa))
     parameters.error("reflectance", fmt::format("'reflectance' and '{}' or '{}' exclude each other", eta_name, k_name));
-  if (reflectance) return {unit_spectrum, kappa_of_reflectance(spectra, reflectance->id)};
+  if (reflectance) return {unit_spectrum, kappa_of_reflectance(spectra, reflectance->id), no_index};
   return {spectrum_or(eta, spectra.add_named("metal-Cu-eta").value_or(unit_spectrum)),
-          spectrum_or(kappa, spectra.add_named("metal-Cu-k").value_or(zero_spectrum))};
+          spectrum_or(kappa, spectra.add_named("metal-Cu-k").value_or(zero_spectrum)), no_index};
 }
 
 NamedMaterial& named_material(Reader& reader, const std::string& name, Source source) {

@@ -20,7 +20,7 @@ struct KnownOption {
 };
 constexpr KnownOption known_options[] = {
     {"disablepixeljitter", OptionType::boolean, Strict::refuses, ""},
-    {"disabletexturefiltering", OptionType::boolean, Strict::refuses, "textures are filtered as always"},
+    {"disabletexturefiltering", OptionType::boolean, Strict::refuses, ""},
     {"disablewavelengthjitter", OptionType::boolean, Strict::refuses, "wavelengths are sampled"},
     {"displacementedgescale", OptionType::real, Strict::refuses, "displacement is not tessellated by it"},
     {"forcediffuse", OptionType::boolean, Strict::refuses, "materials stay what they are"},
@@ -60,6 +60,8 @@ std::string_view value_mistake(OptionType type, const Token& value) {
 void apply(Reader& reader, const KnownOption& option, const Token& value) {
   if (option.name == "seed") {
     reader.scene.settings.seed = static_cast<uint32_t>(*parse_number(value.text));
+  } else if (option.name == "disabletexturefiltering") {
+    reader.disables_texture_levels = value.text == "true";
   } else {
     reader.scene.settings.pixel_jitter = value.text == "false";
   }

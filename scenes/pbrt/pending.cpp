@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "engine/schedule/workers.h"
+#include "scenes/images/texture_memory.h"
 #include "scenes/meshes/read_mesh.h"
 #include "scenes/pbrt/reader.h"
 
@@ -20,7 +21,8 @@ void read_file_of(Job& job) {
     Mesh& mesh = job.scene.meshes[file.mesh];
     if (read_ply(file.path, file.named_at, mesh, job.diagnostics)) validate_mesh(mesh, file.named_at, job.diagnostics);
   } else {
-    read_image(file.path, file.named_at, job.scene.images[file.image], job.diagnostics, file.encoding);
+    read_image(file.path, file.named_at, job.scene.images[file.image], job.diagnostics, file.encoding,
+               pixels_of_textures(job.scene));
   }
 }
 
@@ -48,9 +50,10 @@ void read_pending(Reader& reader) {
   reader.pending_files.clear();
   for (const TextureId id : reader.may_take_alpha) {
     Texture& texture = reader.scene.textures[id];
-    if (!reader.scene.images[texture.image].alpha.empty()) texture.channel = TextureChannel::alpha;
+    if (reader.scene.images[texture.image].file_has_alpha) texture.channel = TextureChannel::alpha;
   }
   reader.may_take_alpha.clear();
+  if (!reader.messages.diagnostics.has_errors()) read_images_that_fit(reader.scene, reader.messages.diagnostics);
 }
 
 }  // namespace metamer::pbrt

@@ -139,7 +139,8 @@ struct Reader {
 
   std::vector<std::filesystem::path> open_files = {};
   size_t files_read = 0;
-  bool gave_up = false;  // too many mistakes
+  bool disables_texture_levels = false;  // Option "disabletexturefiltering"
+  bool gave_up = false;                  // too many mistakes
 
   const ParameterPointers& attributes(AttributeTarget target) const {
     return state.attributes[static_cast<size_t>(target)];

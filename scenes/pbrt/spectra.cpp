@@ -136,6 +136,15 @@ struct SpectrumReader {
   }
 };
 
+// The texture that is named, if it is the same everywhere: then its value does.
+const Texture* constant_texture(const Reader& reader, const Parameter& parameter,
+                                const std::map<std::string, std::optional<TextureId>>& textures) {
+  const auto known = parameter.strings.size() == 1 ? textures.find(parameter.strings[0]) : textures.end();
+  if (known == textures.end() || !known->second) return nullptr;
+  const Texture& texture = reader.scene.textures[*known->second];
+  return texture.kind == TextureKind::constant ? &texture : nullptr;
+}
+
 void report_texture(Reader& reader, Parameters& parameters, const Parameter& parameter,
                     const std::map<std::string, std::optional<TextureId>>& textures) {
   const std::string name = parameter.strings.size() == 1 ? parameter.strings[0] : "";
@@ -161,6 +170,9 @@ std::optional<SpectrumValue> read_spectrum(Reader& reader, Parameters& parameter
   const Parameter* parameter = parameters.find(name, std::span(types).first(count));
   if (parameter == nullptr) return std::nullopt;
   if (parameter->type == ParameterType::texture) {
+    const Texture* constant = constant_texture(reader, *parameter, reader.spectrum_textures);
+    if (constant != nullptr && kind == RgbKind::albedo && constant->is_number == 0)
+      return SpectrumValue{constant->spectrum, {}};
     report_texture(reader, parameters, *parameter, reader.spectrum_textures);
     return std::nullopt;
   }
@@ -172,6 +184,8 @@ double read_real_or_texture(Reader& reader, Parameters& parameters, std::string_
   const Parameter* parameter = parameters.find(name, types);
   if (parameter == nullptr) return fallback;
   if (parameter->type == ParameterType::texture) {
+    if (const Texture* constant = constant_texture(reader, *parameter, reader.float_textures))
+      return double{constant->value};
     report_texture(reader, parameters, *parameter, reader.float_textures);
     return fallback;
   }

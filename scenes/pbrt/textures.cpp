@@ -81,6 +81,18 @@ std::optional<ImageId> read_shared_image(Reader& reader, Parameters& parameters,
   return known->second;
 }
 
+void read_filter(const Reader& reader, Parameters& parameters, Texture& texture) {
+  const std::string filter = texture_choice(parameters, "filter", "bilinear", filter_kinds);
+  texture.filter = filter == "point"       ? TextureFilter::nearest
+                   : filter == "bilinear"  ? TextureFilter::linear
+                   : filter == "trilinear" ? TextureFilter::trilinear
+                                           : TextureFilter::anisotropic;
+  if (reader.disables_texture_levels && uses_levels(texture.filter)) texture.filter = TextureFilter::linear;
+  const double most = parameters.number("maxanisotropy", 8);
+  if (most < 1) parameters.error("maxanisotropy", "'maxanisotropy' must be at least 1");
+  texture.most_anisotropy = static_cast<float>(std::max(most, 1.0));
+}
+
 std::optional<TextureId> imagemap(Reader& reader, Parameters& parameters, bool is_number) {
   Texture texture;
   texture.kind = TextureKind::image;
@@ -88,8 +100,7 @@ std::optional<TextureId> imagemap(Reader& reader, Parameters& parameters, bool i
   texture.mapping = read_mapping(reader, parameters);
   texture.scale = static_cast<float>(parameters.number("scale", 1));
   texture.invert = parameters.boolean("invert", false);
-  texture.nearest = texture_choice(parameters, "filter", "bilinear", filter_kinds) == "point";
-  parameters.number("maxanisotropy", 8);
+  read_filter(reader, parameters, texture);
   const std::string wrap = texture_choice(parameters, "wrap", "repeat", wrap_kinds);
   texture.wrap = wrap == "clamp"              ? TextureWrap::clamp
                  : wrap == "black"            ? TextureWrap::black

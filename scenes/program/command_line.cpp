@@ -15,9 +15,10 @@ namespace metamer {
 namespace {
 
 constexpr uint32_t most_threads = 1024;
-constexpr uint32_t largest_tile = 1024;     // pixels: beyond, a thread's own sums would no longer be small
-constexpr uint32_t deepest_path = 65535;    // scattering events
-constexpr float largest_exposure = 100.0f;  // stops: what tone mapping takes
+constexpr uint32_t largest_tile = 1024;   // pixels: beyond, a thread's own sums would no longer be small
+constexpr uint32_t deepest_path = 65535;  // scattering events
+constexpr uint64_t least_texture_memory = uint64_t{32} << 20;  // what the cache needs, and as much again
+constexpr float largest_exposure = 100.0f;                     // stops: what tone mapping takes
 
 constexpr const char* strict_help = "Warnings and notes are errors, as long as the picture depends on them";
 
@@ -64,7 +65,7 @@ constexpr const char* info_footer = R"(Examples:
 // Flags as text, the way they were written.
 struct RenderTexts {
   std::string samples_per_pixel, size, threads, tile, seed, max_depth, spectral, exposure, integrator, color,
-      clamp_indirect;
+      clamp_indirect, texture_memory;
   bool no_shadows = false;
   LookTexts look;
 };
@@ -104,6 +105,10 @@ void add_render(CLI::App& app, RenderArguments& arguments, RenderTexts& texts) {
                      fmt::join(color_mode_names(), ", ")));
   option("--exposure", texts.exposure, "STOPS|auto", "Brightens the PNG by powers of 2, as in develop; not the EXR");
   add_look_flags(*render, texts.look);
+  option(
+      "--texture-memory", texts.texture_memory, "SIZE",
+      "Memory for the texels of textures, such as 512M or 2G; what exceeds it stays in files and is read in tiles as "
+      "it is needed; no limit if not given; changes no pixel");
   option("--stats", arguments.stats, "STATS.json", "Write times, rays and memory there");
   render->add_flag("--preview-only", arguments.preview_only, "Leave the film's exact sums out of the EXR");
   render->add_flag("--strict", arguments.strict, strict_help);
@@ -213,6 +218,8 @@ SceneOverrides parse_overrides(const CLI::App& render, const RenderTexts& texts,
   if (given("--seed")) overrides.seed = parse_count("--seed", texts.seed, 0, 0xffffffffu, mistakes);
   if (given("--spectral"))
     overrides.band_count = parse_count("--spectral", texts.spectral, 0, max_band_count, mistakes);
+  if (given("--texture-memory"))
+    overrides.texture_memory = parse_bytes("--texture-memory", texts.texture_memory, least_texture_memory, mistakes);
   if (given("--color"))
     if (const auto index = parse_name("--color", texts.color, color_mode_names(), mistakes))
       overrides.color = static_cast<ColorMode>(*index);

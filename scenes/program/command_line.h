@@ -22,6 +22,7 @@ struct SceneOverrides {
   std::optional<Integrator> integrator;
   bool no_shadows = false;  // false: what the scene says
   std::optional<ColorMode> color;
+  std::optional<uint64_t> texture_memory;  // bytes
 };
 
 struct RenderArguments {

@@ -72,6 +72,7 @@ BuiltWorld freeze_and_print(S&& scene, const std::string& path, Remarks remarks)
 LoadedScene load_scene(const std::string& path, const SceneOverrides& overrides, Remarks remarks) {
   const Clock::time_point start = Clock::now();
   LoadedScene loaded;
+  loaded.scene.texture_memory = overrides.texture_memory.value_or(loaded.scene.texture_memory);
   const bool is_good = read_scene(path, loaded.scene, loaded.diagnostics);
   if (remarks.strict) loaded.diagnostics.apply_strict();
   if (!is_good || loaded.diagnostics.has_errors()) {

@@ -82,6 +82,9 @@ void tell_result(const FrameReport& report, bool quiet) {
   if (report.render.counters.grids.unfinished > 0)
     fmt::print(stderr, "metamer: warning: {} rays collided more than {} times within one medium and end there\n",
                report.render.counters.grids.unfinished, most_collisions);
+  if (report.texture_cache.failed_lookups > 0)
+    fmt::print(stderr, "metamer: warning: {} texels could not be read from the files of textures and count as black\n",
+               report.texture_cache.failed_lookups);
   fmt::print(stderr, "metamer: first ray after {} ({} to read, {} to build)\n", short_time(report.first_ray_seconds),
              short_time(report.load_seconds), short_time(report.build_seconds));
   const double seconds = report.render.render_seconds;
@@ -163,11 +166,13 @@ int run_render(const RenderArguments& arguments) {
   const std::unique_ptr<World> world = make_world(arguments, path, report);
   report.settings = world->settings;
   report.world_bytes = world_bytes(*world);
+  report.texture_bytes = world->textures.bytes();
   const TileRect rendered = rendered_pixels(world->settings);
   report.film_bytes = film_bytes(rendered.width(), rendered.height(), world->settings.band_count);
   Film film(rendered.width(), rendered.height(), world->settings.band_count);
   save_when_interrupted();
   trace(arguments, *world, film, report);
+  report.texture_cache = image_cache_stats(world->textures);
   if (report.samples.total == 0) throw Failure(exit_failed, "interrupted before the first pixel; nothing was written");
 
   tell_result(report, arguments.quiet);

@@ -68,6 +68,14 @@ Json::Value to_json(const FrameReport& report) {
   json["batch_bytes"] = count(report.render.batch_bytes);
   json["film_bytes"] = count(report.film_bytes);
   json["world_bytes"] = count(report.world_bytes);
+  json["textures"]["bytes"] = count(report.texture_bytes);
+  const ImageCacheStats& cache = report.texture_cache;
+  json["textures"]["files"] = count(cache.files);
+  json["textures"]["file_bytes"] = count(cache.file_bytes);
+  json["textures"]["cache_limit_bytes"] = count(cache.limit_bytes);
+  json["textures"]["cache_bytes"] = count(cache.held_bytes);
+  json["textures"]["cache_tiles_read"] = count(cache.tiles_read);
+  json["textures"]["cache_bytes_read"] = count(cache.read_bytes);
   return json;
 }
 

@@ -4,6 +4,7 @@
 
 #include "engine/files/atomic_file.h"
 #include "engine/film/film.h"
+#include "systems/image_cache.h"
 #include "systems/render.h"
 
 namespace metamer {
@@ -18,6 +19,8 @@ struct FrameReport {
   // From the process's start until rays are traced, and until the first tile was in the film.
   double first_ray_seconds = 0, first_pixel_seconds = 0;
   size_t film_bytes = 0, world_bytes = 0;
+  size_t texture_bytes = 0;  // in memory
+  ImageCacheStats texture_cache;
   uint32_t tile_size = 0;
   bool is_interrupted = false;
 };

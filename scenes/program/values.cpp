@@ -33,6 +33,26 @@ std::optional<uint32_t> parse_count(std::string_view flag, std::string_view text
   return std::nullopt;
 }
 
+std::optional<uint64_t> parse_bytes(std::string_view flag, std::string_view text, uint64_t least, Mistakes& mistakes) {
+  constexpr std::pair<std::string_view, int> units[] = {{"k", 10}, {"m", 20}, {"g", 30}, {"t", 40}};
+  const std::string lower = in_lower_case(text);
+  std::string_view digits = lower;
+  if (digits.ends_with("ib")) digits.remove_suffix(2);
+  int shift = 0;
+  for (const auto& [unit, bits] : units)
+    if (shift == 0 && digits.ends_with(unit)) {
+      digits.remove_suffix(1);
+      shift = bits;
+    }
+  const std::optional<uint64_t> value = number<uint64_t>(digits);
+  if (value && *value <= (~uint64_t{0} >> shift) && (digits.size() == lower.size() || shift > 0) &&
+      (*value << shift) >= least)
+    return *value << shift;
+  mistakes.push_back(
+      fmt::format("{}: expected bytes, such as 512M or 2G, of at least {}M, not '{}'", flag, least >> 20, text));
+  return std::nullopt;
+}
+
 std::optional<float> parse_real(std::string_view flag, std::string_view text, float least, float most,
                                 Mistakes& mistakes, std::string_view or_else) {
   std::string_view digits = text;

@@ -16,6 +16,9 @@ using Mistakes = std::vector<std::string>;
 std::optional<uint32_t> parse_count(std::string_view flag, std::string_view text, uint32_t least, uint32_t most,
                                     Mistakes& mistakes);
 
+// Bytes, of at least so many: a whole number with K, M, G or T (or KiB ...), powers of 1024, or without.
+std::optional<uint64_t> parse_bytes(std::string_view flag, std::string_view text, uint64_t least, Mistakes& mistakes);
+
 // A number within [least, most]; a leading + is allowed. `or_else` is told where it is wrong: " or auto".
 std::optional<float> parse_real(std::string_view flag, std::string_view text, float least, float most,
                                 Mistakes& mistakes, std::string_view or_else = {});

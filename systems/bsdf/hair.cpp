@@ -22,10 +22,13 @@ HairShape hair_shape(double beta_m, double beta_n, double tilt_deg) {
   return shape;
 }
 
-double hair_absorption_of_reflectance(double reflectance, double beta_n) {
+double hair_absorption_of_log(double beta_n) {
   const double b = beta_n, b2 = b * b;
-  const double factor = 5.969 - 0.215 * b + 2.532 * b2 - 10.73 * b2 * b + 5.574 * b2 * b2 + 0.245 * b2 * b2 * b;
-  const double root = portable::log(std::clamp(reflectance, 1e-6, 1.0)) / factor;
+  return 1 / (5.969 - 0.215 * b + 2.532 * b2 - 10.73 * b2 * b + 5.574 * b2 * b2 + 0.245 * b2 * b2 * b);
+}
+
+double hair_absorption_of_reflectance(double reflectance, double beta_n) {
+  const double root = portable::log(std::clamp(reflectance, 1e-6, 1.0)) * hair_absorption_of_log(beta_n);
   return root * root;
 }
 

@@ -16,5 +16,7 @@ HairShape hair_shape(double beta_m, double beta_n, double tilt_deg);
 
 // Absorption per radius of hair that has this colour in numbers, reflectance in (0, 1]: Chiang et al., equation 9.
 double hair_absorption_of_reflectance(double reflectance, double beta_n);
+// The square of this times the logarithm of the reflectance is that.
+double hair_absorption_of_log(double beta_n);
 
 }  // namespace metamer

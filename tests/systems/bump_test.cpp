@@ -27,7 +27,7 @@ double cosine_on_square(TexturedScene& s, Material material, double u, double v)
 
 Texture height(Texture image) {
   image.is_number = 1;
-  image.nearest = 0;
+  image.filter = TextureFilter::linear;
   return image;
 }
 

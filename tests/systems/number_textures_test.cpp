@@ -28,7 +28,7 @@ TEST(NumberTextures, ImagesAreLinearBetweenTexelsExactly) {
   for (const double u : {0.3, 0.5, 0.6}) {
     TexturedScene s;
     Texture texture = as_number(s.greys(2, 2, {0.0f, 1.0f, 0.2f, 0.6f}));
-    texture.nearest = 0;
+    texture.filter = TextureFilter::linear;
     texture.scale = 3;
     const double right = (u - 0.25) / 0.5, upper = (0.4 - 0.25) / 0.5;
     const double wanted = 3 * (upper * right + (1 - upper) * (0.2 * (1 - right) + 0.6 * right));

@@ -29,7 +29,7 @@ TEST(Textures, BetweenTexelsTheMeanIsLinear) {
     TexturedScene s;
     s.b.scene.settings.samples_per_pixel = 256;
     Texture texture = s.greys(2, 2, {0.0f, 1.0f, 0.2f, 0.6f});
-    texture.nearest = 0;
+    texture.filter = TextureFilter::linear;
     const double right = (u - 0.25) / 0.5, v = 0.4, upper = (v - 0.25) / 0.5;
     const double wanted = upper * right + (1 - upper) * (0.2 * (1 - right) + 0.6 * right);
     // 4096 samples of a standard deviation of at most 0.5, independent: 5 sigma are 0.04; low-discrepancy far less.
@@ -88,7 +88,7 @@ TEST(Textures, AProductOfTwoImagesIsTheProductOfTheirMeans) {
   TexturedScene s;
   s.b.scene.settings.samples_per_pixel = 256;
   Texture texture = s.greys(2, 1, {0, 1});
-  texture.nearest = 0;
+  texture.filter = TextureFilter::linear;
   const TextureId a = s.add(texture), b = s.add(texture);
   EXPECT_NEAR(mean(s.look(s.add(s.combination(TextureKind::scale, a, b)), 0.5, 0.5)), 0.25, 0.02);
 }

@@ -2,6 +2,8 @@
 // wrong.
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "scenes/native/read_native.h"
 #include "tests/scenes/support/files.h"
 
@@ -63,6 +65,66 @@ TEST(NativeVarying, AConductorsReflectanceIsASpectrumOrATexture) {
   const VaryingScene texture = material("\"type\": \"conductor\", \"reflectance\": {\"texture\": \"c\"}");
   ASSERT_TRUE(texture.ok) << texture.messages();
   EXPECT_EQ(texture.at(texture.material().reflectance_texture).is_number, 0u);
+}
+
+TEST(NativeVarying, EveryNumberOfALayer) {
+  const VaryingScene r = material(
+      "\"type\": \"layered\", \"base_reflectance\": {\"texture\": \"c\"}, \"eta\": 1.5, "
+      "\"roughness\": {\"texture\": \"f\"}, \"base_roughness\": [{\"texture\": \"r\"}, 0.125], "
+      "\"optical_thickness\": {\"texture\": \"f\"}, \"asymmetry\": {\"texture\": \"r\"}, "
+      "\"albedo\": {\"texture\": \"c\"}");
+  ASSERT_TRUE(r.ok) << r.messages();
+  const Material m = r.material();
+  EXPECT_EQ(m.layer.base, LayerBase::conductor);
+  EXPECT_EQ(r.at(m.reflectance_texture).is_number, 0u);
+  EXPECT_EQ(m.alpha_x_texture, m.alpha_y_texture);
+  EXPECT_EQ(r.at(m.alpha_x_texture).value, 0.25f);
+  EXPECT_EQ(r.at(m.layer.base_alpha_x_texture).kind, TextureKind::square_root);
+  EXPECT_EQ(m.layer.base_alpha_y, 0.125f);
+  EXPECT_EQ(m.layer.base_alpha_y_texture, no_index);
+  EXPECT_EQ(r.at(m.layer.thickness_texture).value, 0.25f);
+  EXPECT_EQ(r.at(m.layer.asymmetry_texture).kind, TextureKind::square_root);
+  EXPECT_EQ(r.at(m.layer.albedo_texture).is_number, 0u);
+  EXPECT_THAT(material("\"type\": \"layered\", \"base_reflectance\": 0.5, \"base_kappa\": 1, \"eta\": 1.5").messages(),
+              HasSubstr("'base_reflectance' and 'base_kappa' exclude each other"));
+}
+
+TEST(NativeVarying, TheColourOfHair) {
+  const VaryingScene spectrum = material("\"type\": \"hair\", \"reflectance\": 0.25");
+  ASSERT_TRUE(spectrum.ok) << spectrum.messages();
+  // Chiang et al., equation 9, at beta_n = 0.3: (ln 0.25 / 5.8586...)^2.
+  const double b = 0.3;
+  const double factor =
+      5.969 - 0.215 * b + 2.532 * b * b - 10.73 * std::pow(b, 3) + 5.574 * std::pow(b, 4) + 0.245 * std::pow(b, 5);
+  EXPECT_NEAR(spectrum.scene.spectra.value(spectrum.material().hair.sigma_a, 550), std::pow(std::log(0.25) / factor, 2),
+              1e-5);
+  const VaryingScene texture = material("\"type\": \"hair\", \"reflectance\": {\"texture\": \"c\"}");
+  ASSERT_TRUE(texture.ok) << texture.messages();
+  EXPECT_EQ(texture.at(texture.material().reflectance_texture).is_number, 0u);
+}
+
+TEST(NativeVarying, FiltersOfImages) {
+  const auto image = [](const std::string& keys) {
+    Scene scene;
+    Diagnostics diagnostics;
+    const TemporaryFolder folder;
+    folder.write("grey.pfm", std::string("PF\n1 1\n-1.0\n") + std::string(12, '\0'));
+    const std::string path = folder.write(
+        "scene.json", "{\"metamer\": 1, \"textures\": {\"i\": {\"type\": \"image\", \"image\": \"grey.pfm\"" + keys +
+                          "}}, \"entities\": []}");
+    read_native(path, scene, diagnostics);
+    return std::pair(scene.textures.empty() ? Texture() : scene.textures[0], format_diagnostics(diagnostics));
+  };
+  EXPECT_EQ(image("").first.filter, TextureFilter::anisotropic);
+  EXPECT_EQ(image("").first.most_anisotropy, 8.0f);
+  EXPECT_EQ(image(", \"filter\": \"trilinear\"").first.filter, TextureFilter::trilinear);
+  EXPECT_EQ(image(", \"filter\": \"linear\"").first.filter, TextureFilter::linear);
+  EXPECT_EQ(image(", \"filter\": \"nearest\"").first.filter, TextureFilter::nearest);
+  EXPECT_EQ(image(", \"anisotropy\": 2.5").first.most_anisotropy, 2.5f);
+  EXPECT_THAT(image(", \"anisotropy\": 0.5").second, HasSubstr("'anisotropy' is the number 0.5"));
+  EXPECT_THAT(image(", \"filter\": \"linear\", \"anisotropy\": 2").second,
+              HasSubstr("'anisotropy' goes with the filter 'anisotropic' only"));
+  EXPECT_THAT(image(", \"filter\": \"trilinar\"").second, HasSubstr("did you mean 'trilinear'?"));
 }
 
 TEST(NativeVarying, AlphaOfShapes) {

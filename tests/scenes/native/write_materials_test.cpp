@@ -128,6 +128,31 @@ TEST(NativeWriter, MaterialsOfOthersAreKept) {
   expect_converts(read.scene);
 }
 
+TEST(NativeWriter, TexturesOfCoatsAndHairAndFiltersAreKept) {
+  const TemporaryFolder images;
+  const std::string file = "\"imagemap\" \"string filename\" \"" + image_file(images, "wood.png", false, 8, 8) + "\"";
+  const ReadScene read = read_world(
+      "LightSource \"infinite\" Translate 0 0 4\n"
+      "Texture \"n\" \"float\" " +
+      file +
+      " \"string filter\" \"trilinear\"\n"
+      "Texture \"c\" \"spectrum\" " +
+      file +
+      " \"string filter\" \"EWA\" \"float maxanisotropy\" 3\n"
+      "Texture \"p\" \"spectrum\" " +
+      file +
+      " \"string filter\" \"point\"\n"
+      R"(Material "coateddiffuse" "texture reflectance" "c" "texture uroughness" "n" "float vroughness" 0.1
+      "texture thickness" "n" "texture g" "n" "texture albedo" "p" Shape "sphere" Translate 1 0 0
+    Material "coatedconductor" "texture interface.roughness" "n" "texture reflectance" "c"
+      "texture conductor.vroughness" "n" Shape "sphere" Translate 1 0 0
+    Material "hair" "texture color" "p" Shape "sphere")");
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  EXPECT_EQ(read.messages.size(), 0u);
+  ASSERT_NE(tiny_film(read.scene), nullptr);
+  expect_converts(read.scene);
+}
+
 // What is rendered of grids is what is written; that the rest is lost is said.
 
 }  // namespace

@@ -25,8 +25,6 @@ INSTANTIATE_TEST_SUITE_P(
     testing::ValuesIn(std::vector<Remark>{
         {"\nFilm \"rgb\" \"integer pixelbounds\" [0 9 0 9] \"float cropwindow\" [0 1 0 1]",
          "3: warning: both 'pixelbounds' and 'cropwindow' are given; the former counts"},
-        {"Option \"disabletexturefiltering\" true",
-         "2: note: Option \"disabletexturefiltering\" is not supported; textures are filtered as always"},
         {"Option \"disablewavelengthjitter\" true",
          "2: note: Option \"disablewavelengthjitter\" is not supported; wavelengths are sampled"},
         {"Option \"displacementedgescale\" 2",

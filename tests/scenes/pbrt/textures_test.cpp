@@ -39,7 +39,7 @@ TEST(PbrtTextures, AnImageMap) {
   const Texture t = r.texture();
   EXPECT_EQ(t.kind, TextureKind::image);
   EXPECT_EQ(t.wrap, TextureWrap::repeat);
-  EXPECT_EQ(t.nearest, 0u);
+  EXPECT_EQ(t.filter, TextureFilter::linear);
   EXPECT_EQ(t.invert, 0u);
   EXPECT_EQ(t.scale, 1);
   const Image& image = r.read.scene.images.at(t.image);
@@ -58,7 +58,7 @@ TEST(PbrtTextures, EveryParameterOfAnImageMap) {
   ASSERT_THAT(r.read.messages, ElementsAre());
   const Texture t = r.texture();
   EXPECT_EQ(t.wrap, TextureWrap::clamp);
-  EXPECT_EQ(t.nearest, 1u);
+  EXPECT_EQ(t.filter, TextureFilter::nearest);
   EXPECT_EQ(t.invert, 1u);
   EXPECT_EQ(t.scale, 0.5f);
   EXPECT_EQ(t.mapping.u_scale, 2);

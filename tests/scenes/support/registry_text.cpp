@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "tests/scenes/support/texture_text.h"
+
 namespace metamer {
 namespace {
 
@@ -32,6 +34,27 @@ std::string spectrum(const Scene& scene, SpectrumId id, double scale = 1) {
   std::string text[3];
   for (int i = 0; i < 3; ++i) text[i] = fmt::format("{:.4g}", scale * scene.spectra.value(id, 450 + 100 * i));
   return text[0] == text[1] && text[1] == text[2] ? text[0] : fmt::format("({} {} {})", text[0], text[1], text[2]);
+}
+
+// The textures that stand in place of parameters.
+std::string textures_text(const Scene& scene, const Material& m) {
+  const std::pair<const char*, TextureId> places[] = {{"reflectance", m.reflectance_texture},
+                                                      {"transmittance", m.transmittance_texture},
+                                                      {"alpha x", m.alpha_x_texture},
+                                                      {"alpha y", m.alpha_y_texture},
+                                                      {"base alpha x", m.layer.base_alpha_x_texture},
+                                                      {"base alpha y", m.layer.base_alpha_y_texture},
+                                                      {"thickness", m.layer.thickness_texture},
+                                                      {"asymmetry", m.layer.asymmetry_texture},
+                                                      {"albedo", m.layer.albedo_texture},
+                                                      {"amount", m.mix.amount_texture},
+                                                      {"displacement", m.displacement}};
+  std::string text;
+  for (const auto& [name, id] : places)
+    if (id != no_index) text += fmt::format(", {}: {}", name, texture_text(scene, id));
+  if (m.normal_map != no_index)
+    text += fmt::format(", normals of {} x {}", scene.images[m.normal_map].width, scene.images[m.normal_map].height);
+  return text;
 }
 
 std::string material_text(const Scene& scene, const Material& m) {
@@ -71,7 +94,7 @@ std::string material_text(const Scene& scene, const Material& m) {
   }
   if (m.alpha_x != 0 || m.alpha_y != 0) text += fmt::format(" alpha {:.4g} {:.4g}", m.alpha_x, m.alpha_y);
   if (m.thin != 0) text += " thin";
-  return text;
+  return text + textures_text(scene, m);
 }
 
 std::string light_text(const Scene& scene, const Light& light) {
@@ -101,6 +124,7 @@ std::string shape_text(const Scene& scene, Entity entity) {
     text = fmt::format("shape of kind {}", static_cast<uint32_t>(g.kind));
   }
   if (g.flip_normal != 0) text += " flipped";
+  if (g.alpha_texture != no_index) text += ", alpha: " + texture_text(scene, g.alpha_texture);
   text += place(scene, entity);
   const Entity material = scene.registry.get<MaterialSlot>(entity).material;
   if (scene.registry.has<MaterialSlot>(entity))

@@ -45,7 +45,7 @@ struct TexturedScene {
     Texture texture;
     texture.kind = TextureKind::image;
     texture.image = static_cast<ImageId>(b.scene.images.size() - 1);
-    texture.nearest = 1;
+    texture.filter = TextureFilter::nearest;
     return texture;
   }
   // Greys from the top row down.
