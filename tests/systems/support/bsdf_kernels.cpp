@@ -268,14 +268,14 @@ std::vector<BsdfResult> SampleCoated(const Coat& coat, const std::vector<BsdfCas
 std::vector<BsdfResult> EvalPhase(const std::vector<BsdfCase>& cases) {
   return run(cases, [](const Arguments& a) {
     Results r = nothing();
-    r.pdf = eval_phase(a.wi.z, PhaseLobes{a.alpha_x, a.alpha_y, a.shininess});
+    r.pdf = eval_phase(a.wi.z, PhaseLobes{a.alpha_x, a.alpha_y, a.rough.shininess});
     return r;
   });
 }
 std::vector<BsdfResult> SamplePhase(const std::vector<BsdfCase>& cases) {
   return run(cases, [](const Arguments& a) {
     Results r = nothing();
-    const PhaseLobes lobes = {a.alpha_x, a.alpha_y, a.shininess};
+    const PhaseLobes lobes = {a.alpha_x, a.alpha_y, a.rough.shininess};
     r.wi = sample_phase(lobes, a.choice, a.u, a.v);
     r.pdf = eval_phase(r.wi.z, lobes);
     return r;
