@@ -1,8 +1,10 @@
 // Media that vary in space: what rays lose, gain and scatter on their way through grids, on each wavelength.
-#include <cstring>
-#include <glm/gtc/matrix_access.hpp>
+#include <algorithm>
+#include <glm/geometric.hpp>
 #include <numbers>
 
+#include "engine/sampling/hash.h"
+#include "engine/spectrum/sources.h"
 #include "tests/systems/support/grid_scene.h"
 
 namespace metamer {
@@ -234,6 +236,175 @@ TEST(GridVolumes, ScatterOnceAsTheIntegralSays) {
   }
   expect_mean(
       trace_radiances(*b.freeze()), [&](double nm) { return interpolate(expected, nm); }, 0.025);
+}
+
+// What a flame adds along the beam, from the camera on: sigma_a L_e times what is let through so far.
+template <class Density, class Glow>
+double seen_glow(const Density& density, const Glow& glow, double sigma_t) {
+  constexpr int steps = 4000;
+  constexpr double h = 2.0 / steps;
+  double sum = 0, depth = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double z = 1 - (i + 0.5) * h, d = density(z);
+    sum += glow(z) * d * std::exp(-sigma_t * (depth + 0.5 * d * h)) * h;
+    depth += d * h;
+  }
+  return sum;
+}
+double warmth(int i, int j, int k) { return 20 * (i + j) + 60 * k; }  // degrees above 300 K, over 3
+
+// A thin flame that only absorbs and one that scatters out of the way what is not followed: at max_depth 0 both show
+// what they emit themselves, dimmed.
+TEST(GridVolumes, GlowByTheirGridAndTheirTemperature) {
+  for (const Integrator integrator : all_levels)
+    for (const double scattering : {0.0, 1.5})
+      for (const bool is_hot : {false, true}) {
+        SceneBuilder b = beam(1024, 0, integrator);
+        MediumGrid grid = unit_box();
+        grid.density = lumpy_grid(b);
+        const auto box = voxels_in_box(glm::ivec3(10), glm::dvec3(-1.2), glm::dvec3(1.2));
+        if (is_hot) {
+          grid.temperature = add_grid(b, glm::ivec3(10), box, warmth);
+          grid.temperature_offset = -100, grid.temperature_scale = 3;
+          grid.blackbody = BlackbodyUnit::peak;
+        } else {
+          grid.emission = add_grid(b, glm::ivec3(10), box, [](int i, int, int k) { return 1 + i + (k % 3); });
+        }
+        const Entity flame = grid_medium(b, slope(b, 0.02, 0.05), b.constant(scattering), grid);
+        Medium medium = b.scene.registry.get<Medium>(flame);
+        medium.emission = is_hot ? zero_spectrum : slope(b, 1, 2);
+        medium.emission_scale = 3;
+        b.scene.registry.set(flame, medium);
+        b.scene.meshes.push_back(cube_mesh());
+        b.separate(b.add(mesh(0), b.interface(), stretched(2, 2, 2)), flame);
+        const auto at = [&](GridId id, double z) { return value_at(b.scene.grids[id], {0.01, 0.02, z}).x; };
+        Samples expected;
+        for (size_t k = 0; k < expected.size(); k += 10) {
+          const double nm = lambda_min_nm + double(k), sigma_a = slope_at(nm, 0.02, 0.05);
+          const auto glow = [&](double z) {
+            if (!is_hot) return 3 * slope_at(nm, 1, 2) * at(grid.emission, z) * sigma_a;
+            const double kelvin = 3 * (at(grid.temperature, z) + 100);
+            return 3 * planck_radiance(kelvin, nm) / planck_radiance(kelvin, 2.897771955e6 / kelvin) * sigma_a;
+          };
+          expected[k] = seen_glow([&](double z) { return at(grid.density, z); }, glow, sigma_a + scattering);
+        }
+        for (size_t k = 0; k < expected.size(); ++k)
+          if (k % 10 != 0)
+            expected[k] = std::lerp(expected[k / 10 * 10], expected[k / 10 * 10 + 10], double(k % 10) / 10);
+        expect_mean(
+            trace_radiances(*b.freeze()), [&](double nm) { return interpolate(expected, nm); }, 0.03);
+      }
+}
+
+// In a furnace of its own radiance what absorbs and glows as much vanishes, whatever it scatters.
+TEST(GridVolumes, ThatGlowVanishAmongTheirEquals) {
+  for (const Variation variation : {Variation::grey, Variation::chromatic, Variation::coloured}) {
+    SceneBuilder b(16, 16, 512, many_events);
+    b.light(LightKind::environment, unit_spectrum, 1);
+    b.look_at({0, 0, 4}, {0, 0, 0}, perspective(30));
+    const Entity smoke = white_smoke(b, variation, 0.2f);
+    Medium medium = b.scene.registry.get<Medium>(smoke);
+    medium.sigma_a = slope(b, 1, 0.3);
+    medium.emission = unit_spectrum;
+    b.scene.registry.set(smoke, medium);
+    b.scene.meshes.push_back(cube_mesh());
+    b.separate(b.add(mesh(0), b.interface(), stretched(2, 2, 2)), smoke);
+    expect_mean(
+        trace_radiances(*b.freeze()), [](double) { return 1.0; }, 0.04);
+  }
+}
+
+// Three numbers per voxel: red, green and blue add up to their share on each wavelength, whatever they are.
+TEST(GridVolumes, OfThreeEqualNumbersAreGrey) {
+  SceneBuilder b = beam(1024, 0);
+  b.light(LightKind::environment, unit_spectrum, 1);
+  MediumGrid grid = unit_box();
+  grid.sigma_a = add_grid(b, glm::ivec3(side), voxels_in_box(glm::ivec3(side), glm::dvec3(-1), glm::dvec3(1)),
+                          [](int i, int j, int k) { return glm::vec3(float(lumps(i, j, k))); });
+  b.scene.meshes.push_back(cube_mesh());
+  b.separate(b.add(mesh(0), b.interface(), stretched(2, 2, 2)), grid_medium(b, slope(b, 0.5, 1), zero_spectrum, grid));
+  const double depth = beam_depth(b.scene, grid.sigma_a);
+  expect_mean(
+      trace_radiances(*b.freeze()), [=](double nm) { return std::exp(-depth * slope_at(nm, 0.5, 1)); }, 0.02);
+}
+
+// A red voxel absorbs red.
+TEST(GridVolumes, OfColoursAbsorbThem) {
+  SceneBuilder b = beam(64, 0);
+  b.light(LightKind::environment, unit_spectrum, 1);
+  MediumGrid grid = unit_box();
+  grid.sigma_a = add_grid(b, glm::ivec3(8), voxels_in_box(glm::ivec3(8), glm::dvec3(-2), glm::dvec3(2)),
+                          [](int, int, int) { return glm::vec3(2, 0, 0); });
+  b.scene.meshes.push_back(cube_mesh());
+  b.separate(b.add(mesh(0), b.interface(), stretched(2, 2, 2)), grid_medium(b, unit_spectrum, zero_spectrum, grid));
+  double red = 0, blue = 0, reds = 0, blues = 0;
+  for (const PathRadiance& path : trace_radiances(*b.freeze()))
+    for (size_t j = 0; j < 4; ++j) {
+      if (path.lambda_nm[j] > 620) red += path.radiance[j], reds += 1;
+      if (path.lambda_nm[j] < 480) blue += path.radiance[j], blues += 1;
+    }
+  EXPECT_LT(red / reds, 0.08);
+  EXPECT_GT(blue / blues, 0.9);
+}
+
+// One that collides again and again is given up and counted, and brings nothing.
+TEST(GridVolumes, GiveUpRaysThatNeverEnd) {
+  SceneBuilder b(4, 4, 1, 0);
+  b.look_at({0.01, 0.02, 5}, {0.01, 0.02, 0}, orthographic(1e-3f), {0, 1, 0});
+  b.light(LightKind::environment, unit_spectrum, 1);
+  b.scene.meshes.push_back(cube_mesh());
+  b.separate(b.add(mesh(0), b.interface(), stretched(2, 2, 2)), white_smoke(b, Variation::grey, 0));
+  const std::unique_ptr<World> world = b.freeze();
+  for (float& majorant : world->majorants) majorant *= 1e9f;
+  RenderStats stats;
+  const Film film = render_film(*world, {1, 16}, &stats);
+  EXPECT_EQ(stats.counters.grids.unfinished, 16u);
+  EXPECT_EQ(mean_xyz(film, 5)[1], 0);
+}
+
+// Smaller majorants save lookups: the same cloud with one for all of it.
+TEST(GridVolumes, SaveLookupsByTheirMajorants) {
+  uint64_t lookups[2];
+  for (const bool has_cells : {false, true}) {
+    SceneBuilder b(16, 16, 16, 4);
+    b.look_at({0, 0, 4}, {0, 0, 0}, perspective(30));
+    b.light(LightKind::environment, unit_spectrum, 1);
+    MediumGrid grid = unit_box();
+    grid.density = add_grid(b, glm::ivec3(64), voxels_in_box(glm::ivec3(64), glm::dvec3(-1), glm::dvec3(1)),
+                            [](int i, int j, int k) {
+                              const double r = glm::length(glm::dvec3(i, j, k) / 31.5 - 1.0);
+                              return std::max(0.0, 1 - 1.5 * r);
+                            });
+    b.scene.meshes.push_back(cube_mesh());
+    b.separate(b.add(mesh(0), b.interface(), stretched(2, 2, 2)), grid_medium(b, zero_spectrum, b.constant(20), grid));
+    const std::unique_ptr<World> world = b.freeze();
+    Column<float>& majorants = world->majorants;
+    const float most = *std::max_element(majorants.begin(), majorants.end());
+    for (size_t i = 0; i < majorants.size() && !has_cells; i += 2) majorants[i] = most, majorants[i + 1] = 0;
+    RenderStats stats;
+    render_film(*world, {1, 16}, &stats);
+    lookups[has_cells] = stats.counters.grids.lookups;
+  }
+  EXPECT_GT(lookups[false], 2 * lookups[true]);
+}
+
+TEST(GridVolumes, VanishInTheFurnaceOfRgbMode) {
+  SceneBuilder b(16, 16, 512, many_events);
+  b.scene.settings.color = ColorMode::rgb;
+  b.light(LightKind::environment, b.named("D65"), static_cast<float>(1 / b.scene.spectra.luminance(b.named("D65"))));
+  b.look_at({0, 0, 4}, {0, 0, 0}, perspective(30));
+  b.scene.meshes.push_back(cube_mesh());
+  b.separate(b.add(mesh(0), b.interface(), stretched(2, 2, 2)), white_smoke(b, Variation::coloured, 0.3f));
+  double sum[3] = {}, squares[3] = {}, count = 0;
+  for (const PathRadiance& path : trace_radiances(*b.freeze())) {
+    count += 1;
+    for (size_t j = 0; j < 3; ++j) sum[j] += path.radiance[j], squares[j] += path.radiance[j] * path.radiance[j];
+  }
+  for (size_t j = 0; j < 3; ++j) {
+    const double deviation = std::sqrt(squares[j] / count - sum[j] / count * sum[j] / count) / std::sqrt(count);
+    EXPECT_NEAR(sum[j] / count, 1, 5 * deviation) << j;
+    EXPECT_LT(deviation, 0.006);
+  }
 }
 
 // A grid with the same number everywhere is a homogeneous medium: both against each other, band by band.

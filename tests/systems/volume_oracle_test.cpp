@@ -1,5 +1,6 @@
 // Media that fill space against the scalar oracle, which follows each wavelength by its own free paths.
 #include "tests/systems/support/agreement.h"
+#include "tests/systems/support/grid_scene.h"
 
 namespace metamer {
 namespace {
@@ -63,6 +64,46 @@ TEST(VolumeOracle, AgreesOnDispersingGlassInColouredFog) {
   b.separate(b.add(sphere(0.4f), b.rough_glass(b.constant(1.4), 0.3f, 0.3f), moved(0.6, -0.2, 0.2)), juice, mist);
   b.look_at({0, 0.1, 3.7}, {0, 0, 0}, perspective(40));
   expect_agreement(*b.freeze(), 3072, 0.04);
+}
+
+// Smoke and a flame from grids, sheared, in coloured fog, the camera in it.
+SceneBuilder smoke(Integrator integrator, uint32_t samples) {
+  SceneBuilder b(side, side, samples, 5);
+  b.scene.settings.integrator = integrator;
+  add_room(b);
+  const Entity thin = b.medium(rgb(b, 0.02, 0.02, 0.04), rgb(b, 0.1, 0.12, 0.2), 0.3f);
+  b.scene.meshes.push_back(cube_mesh());
+  b.separate(b.look_at({0, 0.1, 3.7}, {0, 0, 0}, perspective(40)), {}, thin);
+  b.separate(b.add(mesh(0), b.interface(), moved(0, 0, 1.5) * stretched(5, 2.6, 5)), thin);
+  const glm::ivec3 size(12, 10, 9);
+  const auto voxels = voxels_in_box(size, glm::dvec3(-0.5), glm::dvec3(0.5));
+  MediumGrid cloud = in_box(glm::vec3(-0.5f), glm::vec3(0.5f));
+  cloud.density = add_grid(b, size, voxels, [](int i, int j, int k) { return (i * j + k) % 4; });
+  MediumGrid flame = cloud;
+  flame.sigma_s = add_grid(b, size, voxels, [](int i, int j, int) { return glm::vec3(i, 6, j) / 6.0f; });
+  flame.temperature = add_grid(b, size, voxels, [](int i, int, int k) { return 1000 + 100 * (i + k); });
+  flame.blackbody = BlackbodyUnit::peak;
+  glm::dmat4 shear(1);
+  shear[1][0] = 0.3;
+  const glm::dmat4 left = moved(-0.7, -0.1, 0) * turned(20, 0, 1, 0) * shear * stretched(1.2, 1, 1);
+  const glm::dmat4 right = moved(0.7, 0.1, 0) * turned(40, 1, 1, 0) * stretched(1, -0.9, 0.8);
+  b.separate(b.add(mesh(0), b.interface(), left),
+             grid_medium(b, rgb(b, 0.5, 0.2, 0.1), rgb(b, 1, 2, 3), cloud, 0.6f, left), thin);
+  const Entity fire = grid_medium(b, rgb(b, 0.2, 0.3, 0.4), unit_spectrum, flame, -0.3f, right);
+  Medium medium = b.scene.registry.get<Medium>(fire);
+  medium.emission_scale = 0.03f;
+  medium.g2 = 0.7f, medium.g2_share = 0.4f;
+  b.scene.registry.set(fire, medium);
+  b.separate(b.add(mesh(0), b.interface(), right), fire, thin);
+  return b;
+}
+
+TEST(VolumeOracle, AgreesOnSmokeAndFireFromGrids) {
+  expect_agreement(*smoke(Integrator::path, 1024).freeze(), 512, 0.06);
+}
+TEST(VolumeOracle, AgreesOnGridsForLocalLight) { expect_agreement(*smoke(Integrator::local, 512).freeze(), 256, 0.03); }
+TEST(VolumeOracle, AgreesOnGridsForRecursiveLight) {
+  expect_agreement(*smoke(Integrator::recursive, 512).freeze(), 256, 0.03);
 }
 
 }  // namespace
