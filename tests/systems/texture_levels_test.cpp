@@ -9,10 +9,10 @@ namespace {
 constexpr uint32_t side = 8;
 constexpr double texel = 1.0 / side;  // metres, on a unit square
 
-// Columns of 0 and 1: on level 1 and all above everything is 1/2.
+// Columns of 1 and 0: on level 1 and all above everything is 1/2.
 Texture columns(TexturedScene& s, TextureFilter filter) {
   std::vector<float> greys;
-  for (uint32_t i = 0; i < side * side; ++i) greys.push_back(static_cast<float>(i % 2));
+  for (uint32_t i = 0; i < side * side; ++i) greys.push_back(i % 2 == 0 ? 1.0f : 0.0f);
   Texture texture = s.greys(side, side, greys);
   texture.filter = filter;
   texture.is_number = 1;
