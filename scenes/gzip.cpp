@@ -111,6 +111,13 @@ bool read_packed_file(const std::string& path, const SourceLocation& named_at, F
   return false;
 }
 
+bool inflate_zlib(std::string_view packed, std::span<char> out) {
+  uLongf unpacked = out.size();
+  const int status = uncompress(reinterpret_cast<Bytef*>(out.data()), &unpacked,
+                                reinterpret_cast<const Bytef*>(packed.data()), packed.size());
+  return status == Z_OK && unpacked == out.size();
+}
+
 std::string packed_file_extension(const std::string& path) {
   const std::string extension = file_extension(path);
   return extension == "gz" ? file_extension(path.substr(0, path.size() - 3)) : extension;

@@ -73,33 +73,6 @@ uint32_t add_volume(const Medium& medium, uint32_t grid, World& world) {
 
 }  // namespace
 
-Medium homogeneous_medium(const Scene& scene, Entity entity, SpectrumSet& spectra, Diagnostics& diagnostics) {
-  Medium medium = scene.registry.get<Medium>(entity);
-  if (!scene.registry.has<MediumGrid>(entity)) return medium;
-  const MediumGrid grid = scene.registry.get<MediumGrid>(entity);
-  const auto warn = [&](std::string_view instead) {
-    diagnostics.warning(scene.location(entity),
-                        fmt::format("medium {}: grids are not supported yet; {}", scene.describe(entity), instead));
-  };
-  warn("it is rendered as homogeneous, with the means of its grids");
-  const auto tint = [&](GridId id, SpectrumId& spectrum) {
-    if (id == no_index) return;
-    const Grid& colour = scene.grids[id];
-    const glm::dvec3 mean = grid_mean(colour);
-    const Color3 rgb = {mean.x, mean.y, mean.z};
-    spectrum = spectra.product(spectrum, spectra.add_rgb(rgb, RgbKind::unbounded, colour.color_space).id).id;
-  };
-  if (grid.density != no_index) medium.scale *= static_cast<float>(grid_mean(scene.grids[grid.density]).x);
-  tint(grid.sigma_a, medium.sigma_a);
-  tint(grid.sigma_s, medium.sigma_s);
-  if (grid.emission != no_index && scene.grids[grid.emission].channels == 3) {
-    tint(grid.emission, medium.emission);
-  } else if (grid.emission != no_index) {
-    medium.emission_scale *= static_cast<float>(grid_mean(scene.grids[grid.emission]).x);
-  }
-  return medium;
-}
-
 std::vector<VolumeSides> build_volumes(const Scene& scene, std::span<const glm::dmat4> to_world, World& world,
                                        Diagnostics& diagnostics) {
   const Registry& registry = scene.registry;

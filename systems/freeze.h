@@ -33,10 +33,6 @@ void build_textures(const Scene& scene, Scene* disposable, World& world, Diagnos
 // The row of an image as a normal map; one for all that use it.
 uint32_t add_normal_map(const Image& image, ImageId id, TextureSet& set, Diagnostics& diagnostics);
 
-// The Medium of the entity as it is rendered: what varies in space counts by its means, what is in a file that nothing
-// reads is empty; a warning says so. New spectra go to `spectra`, which begins as the scene's.
-Medium homogeneous_medium(const Scene& scene, Entity entity, SpectrumSet& spectra, Diagnostics& diagnostics);
-
 // Rows of World::volumes on both sides of an entity's surface.
 struct VolumeSides {
   uint32_t inside = keeps_volume, outside = keeps_volume;

@@ -25,7 +25,8 @@ rooms = {
 # Benchmarks and tests may look behind the wrappers.
 libraries = [
     ("Embree", r"embree\d/", ["systems/build_*", "systems/intersect*", "systems/shadow*", "systems/accelerator.h", "systems/alpha_masks.cpp"], None),
-    ("OpenVDB", r"(openvdb|nanovdb)/", ["systems/media*"], None),
+    ("OpenVDB", r"(openvdb|nanovdb)/", ["scenes/volumes/*"], None),
+    ("Blosc", r"blosc\.h", ["scenes/volumes/*"], 1),
     ("OpenImageIO", r"OpenImageIO/", ["engine/files/*", "*/textures*", "*/images*", "*/image_*"], None),
     ("OpenColorIO", r"OpenColorIO/", ["systems/ocio_*"], 1),
     ("OpenEXR", r"(OpenEXR/|Imf|Imath)", ["engine/files/*"], None),

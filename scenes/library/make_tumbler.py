@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes tumbler-glass.ply and tumbler-water.ply, the bodies of revolution of tumbler.json: a drinking glass, and water
-that reaches half into its wall. Lengths in centimetres, y up."""
+"""Writes tumbler-glass.ply, tumbler-water.ply and tea-body.ply, the bodies of revolution of tumbler.json and tea.json: a
+drinking glass, water that reaches half into its wall, and what is within both. Lengths in centimetres, y up."""
 import math
 import pathlib
 
@@ -54,3 +54,8 @@ write(
 )
 middle = WALL / 2
 write("tumbler-water.ply", [(0, FLOOR / 2), (inner(FLOOR) + middle, FLOOR / 2), (inner(LEVEL) + middle, LEVEL), (0, LEVEL)])
+gap = 0.002
+write(
+    "tea-body.ply",
+    [(0, FLOOR + gap), (inner(FLOOR) - gap, FLOOR + gap), (inner(LEVEL) - gap, LEVEL - gap), (0, LEVEL - gap)],
+)

@@ -67,8 +67,18 @@ constexpr KeySpec material_smooth[] = {{"type", required}, {"metal"},        {"g
                                        {"thickness"},      {"displacement"}, {"normal_map"}};
 constexpr KeySpec material_mirror[] = {{"type", required}};
 constexpr KeySpec material_interface[] = {{"type", required}};
-constexpr KeySpec medium_homogeneous[] = {{"type", required}, {"sigma_a"},  {"sigma_s"},       {"scale"}, {"g"}, {"g2"},
-                                          {"g2_share"},       {"emission"}, {"emission_scale"}};
+constexpr KeySpec medium_homogeneous[] = {{"type", required}, {"sigma_a"}, {"sigma_s"}, {"albedo"},   {"sigma_t"},
+                                          {"scale"},          {"g"},       {"g2"},      {"g2_share"}, {"emission"},
+                                          {"emission_scale"}};
+constexpr KeySpec medium_of_grids[] = {
+    {"type", required}, {"sigma_a"}, {"sigma_s"},      {"albedo"},       {"sigma_t"},
+    {"scale"},          {"g"},       {"g2"},           {"g2_share"},     {"emission"},
+    {"emission_scale"}, {"density"}, {"sigma_a_grid"}, {"sigma_s_grid"}, {"emission_grid"},
+    {"temperature"},    {"lookup"},  {"box"},          {"transform"}};
+constexpr KeySpec medium_grid[] = {{"file"}, {"grid"}, {"space"}, {"noise"}};
+constexpr KeySpec temperature_grid[] = {{"file"}, {"grid"}, {"noise"}, {"offset"}, {"scale"}, {"normalized"}};
+constexpr KeySpec noise[] = {{"seed"}, {"octaves"}, {"roughness"},  {"frequency"},
+                             {"bias"}, {"falloff"}, {"resolution"}, {"box"}};
 constexpr KeySpec entity_media[] = {{"inside"}, {"outside"}};
 constexpr KeySpec mesh[] = {{"file"}, {"positions"}, {"indices"}, {"normals"}, {"uvs"}};
 constexpr KeySpec entity[] = {{"name"},     {"parent"}, {"transform"}, {"motion"},     {"geometry"},
@@ -150,6 +160,10 @@ constexpr ObjectSpec specs[] = {{"scene", scene},
                                 {"material.mirror", material_mirror},
                                 {"material.interface", material_interface},
                                 {"medium.homogeneous", medium_homogeneous},
+                                {"medium.grid", medium_of_grids},
+                                {"medium_grid", medium_grid},
+                                {"temperature_grid", temperature_grid},
+                                {"noise", noise},
                                 {"entity_media", entity_media},
                                 {"mesh", mesh},
                                 {"curves", curves},

@@ -18,15 +18,6 @@ bool same_bits(const Transform& a, const Transform& b) {
 
 JsonText numbers(const glm::vec4& row) { return JsonText::numbers(std::array{row.x, row.y, row.z, row.w}); }
 
-// An offset where nothing else is done, else the matrix.
-JsonText write_transform(const Transform& t) {
-  const Transform only_offset{{1, 0, 0, t.row0.w}, {0, 1, 0, t.row1.w}, {0, 0, 1, t.row2.w}};
-  JsonText object = JsonText::object();
-  if (same_bits(t, only_offset))
-    return object.add("translate", JsonText::numbers(std::array{t.row0.w, t.row1.w, t.row2.w}));
-  return object.add("matrix", JsonText::array().add(numbers(t.row0)).add(numbers(t.row1)).add(numbers(t.row2)));
-}
-
 JsonText write_geometry(WriteContext& context, const Geometry& geometry) {
   JsonText object = JsonText::object();
   const auto type = [&](std::string_view name) { object.add("type", JsonText::string(name)); };
@@ -247,6 +238,14 @@ class EntityWriter {
 };
 
 }  // namespace
+
+JsonText write_transform(const Transform& t) {
+  const Transform only_offset{{1, 0, 0, t.row0.w}, {0, 1, 0, t.row1.w}, {0, 0, 1, t.row2.w}};
+  JsonText object = JsonText::object();
+  if (same_bits(t, only_offset))
+    return object.add("translate", JsonText::numbers(std::array{t.row0.w, t.row1.w, t.row2.w}));
+  return object.add("matrix", JsonText::array().add(numbers(t.row0)).add(numbers(t.row1)).add(numbers(t.row2)));
+}
 
 JsonText write_entities(WriteContext& context) { return EntityWriter(context).write(); }
 

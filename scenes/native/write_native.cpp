@@ -10,6 +10,7 @@
 #include "scenes/images/write_image.h"
 #include "scenes/meshes/write_ply.h"
 #include "scenes/native/write_parts.h"
+#include "scenes/volumes/write_vdb.h"
 
 namespace metamer {
 namespace {
@@ -24,7 +25,8 @@ std::string side_folder(const std::string& path) {
 std::string file_stem(const std::string& called, std::string_view fallback) {
   std::string stem = fs::path(called).filename().string();
   const std::string ending = file_extension(stem);
-  for (const std::string_view known : {"ply", "obj", "gz", "exr", "png", "jpg", "jpeg", "tga", "hdr", "pfm"})
+  for (const std::string_view known :
+       {"ply", "obj", "gz", "exr", "png", "jpg", "jpeg", "tga", "hdr", "pfm", "vdb", "nvdb"})
     if (ending == known) stem = fs::path(stem).stem().string();
   constexpr size_t longest = 80;
   if (stem.size() > longest) stem.resize(longest);
@@ -85,7 +87,16 @@ FileError write_side_files(const WriteContext& context, const Cancellation& canc
     if (const FileError error = write_image_file(context.scene.images[file.id], file, folder)) return error;
     files.bytes += fs::file_size(folder.path_of(file.name));
   }
+  for (const GridFile& file : context.grids) {
+    if (cancellation.requested()) return "interrupted; nothing was written";
+    const NamedGrid grid{file.name, &context.scene.grids[file.id]};
+    folder.note_written(file.name + ".vdb");
+    const std::string path = folder.path_of(file.name + ".vdb");
+    if (const FileError error = write_vdb(path, {&grid, 1})) return error;
+    files.bytes += fs::file_size(path);
+  }
   files.meshes = context.meshes.size();
+  files.grids = context.grids.size();
   files.images = context.images.size();
   return std::nullopt;
 }
@@ -144,6 +155,19 @@ const ImageFile& WriteContext::add_image_file(ImageId id, bool is_copy, bool is_
   return images.back();
 }
 
+// A grid's name is "FILE:NAME" or only NAME. What was written by us has the name of its file, which it keeps.
+std::string WriteContext::grid_file_name(GridId id) {
+  for (const GridFile& known : grids)
+    if (known.id == id) return known.name + ".vdb";
+  const std::string& called = scene.grids[id].name;
+  const size_t colon = called.rfind(':');
+  std::string stem = file_stem(colon == std::string::npos ? called : called.substr(0, colon), "grid");
+  const std::string name = colon == std::string::npos ? stem : file_stem(called.substr(colon + 1), "grid");
+  if (stem != name) stem += "-" + name;
+  grids.push_back({id, file_names.take(stem)});
+  return grids.back().name + ".vdb";
+}
+
 // A copy where that can be, else (generated images, other encodings) the pixels in an EXR.
 const ImageFile& WriteContext::texture_image_file(ImageId id) {
   for (const ImageFile& known : images)
@@ -180,7 +204,7 @@ FileError write_native(const Scene& scene, const std::string& path, const Cancel
   files.bytes = text.size();
   files.remarks = context.remarks;
   StagedFolder staged;
-  const bool has_side_files = !context.meshes.empty() || !context.images.empty();
+  const bool has_side_files = !context.meshes.empty() || !context.images.empty() || !context.grids.empty();
   if (has_side_files) {
     files.folder = folder;
     if (const FileError error = staged.open(folder)) return error;

@@ -39,6 +39,11 @@ struct ImageFile {
   bool is_linear = false;  // to be read as linear: floats, or integers without sRGB
 };
 
+struct GridFile {
+  GridId id;
+  std::string name;  // without ".vdb"; also of the grid in it
+};
+
 struct WriteContext {
   WriteContext(const Scene& scene_, std::string folder_) : scene(scene_), folder(std::move(folder_)) {}
 
@@ -57,6 +62,7 @@ struct WriteContext {
   std::map<CurvesId, std::string> curve_names;
   std::vector<MeshFile> meshes;
   std::vector<ImageFile> images;
+  std::vector<GridFile> grids;
   std::vector<std::string> mistakes;  // what the format cannot say
 
   // The name of a mesh in "meshes", the file of an image as textures or as lights read it: all become side files.
@@ -64,12 +70,15 @@ struct WriteContext {
   const ImageFile& texture_image_file(ImageId id);
   const ImageFile& light_image_file(ImageId id);
   const ImageFile& add_image_file(ImageId id, bool is_copy, bool is_linear);
+  std::string grid_file_name(GridId id);
   // The name of curves in "curves".
   std::string curves_name(CurvesId id);
   // What stands where the texture is used: {"texture": name}. It goes to the file's "textures".
   JsonText texture(TextureId id);
 };
 
+// An offset where nothing else is done, else the matrix.
+JsonText write_transform(const Transform& transform);
 // Only what differs from the format's defaults.
 JsonText write_settings(const RenderSettings& settings);
 // Every Material of the registry in the order of its table, by a name of its own.

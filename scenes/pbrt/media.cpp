@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <glm/common.hpp>
 
 #include "engine/spectrum/embedded_data.h"
+#include "engine/spectrum/observers.h"
 #include "scenes/pbrt/matrix.h"
 #include "scenes/pbrt/reader.h"
 
@@ -156,6 +156,9 @@ GridShape read_box(Parameters& parameters, MediumGrid& grid) {
   return shape;
 }
 
+// What glows by its temperature: pbrt divides Planck's law by its peak, and leaves out the 683 lm/W of the luminance.
+constexpr double temperature_emission_scale = 1 / luminous_efficacy;
+
 void read_temperature(Parameters& parameters, MediumGrid& grid) {
   const double cutoff = parameters.number("temperaturecutoff", 0);
   grid.temperature_offset = static_cast<float>(parameters.number("temperatureoffset", cutoff));
@@ -170,6 +173,7 @@ Medium read_uniform_grid(Reader& reader, Parameters& parameters, MediumGrid& gri
   grid.density = read_grid(reader, parameters, "density", ParameterType::real, shape);
   grid.temperature = read_grid(reader, parameters, "temperature", ParameterType::real, shape);
   read_temperature(parameters, grid);
+  if (grid.temperature != no_index) medium.emission_scale = static_cast<float>(temperature_emission_scale);
   read_coefficients(reader, parameters, unit_spectrum, unit_spectrum, medium);
   read_emission(reader, parameters, medium);
   if (parameters.has("Le") && parameters.has("temperature"))
@@ -201,23 +205,39 @@ Medium read_rgb_grid(Reader& reader, Parameters& parameters, MediumGrid& grid) {
   return medium;
 }
 
-Medium read_nanovdb(Reader& reader, Parameters& parameters, MediumGrid& grid) {
+// The grid of a file that a medium, of which the entity is known, will have.
+void add_pending_grid(Reader& reader, const Parameters& parameters, Entity medium, const std::string& path,
+                      const std::string& name, GridId MediumGrid::*handle) {
+  const bool is_temperature = handle == &MediumGrid::temperature;
+  for (PendingGrid& pending : reader.pending_grids) {
+    const GridRequest& request = pending.request;
+    if (request.path != path || request.grid_name != name || request.may_be_missing != is_temperature) continue;
+    pending.uses.push_back({medium, handle});
+    return;
+  }
+  GridRequest request{path, name, reader.messages.at(parameters.source())};
+  request.may_be_negative = request.may_be_missing = is_temperature;
+  reader.pending_grids.push_back({std::move(request), {{medium, handle}}});
+}
+
+Medium read_nanovdb(Reader& reader, Parameters& parameters, MediumGrid& grid, Entity entity) {
   Medium medium;
   const std::string name = parameters.string("filename", "");
   if (name.empty()) {
     parameters.error("filename", "'string filename' is missing");
   } else {
     const std::string path = reader.resolve(name);
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored))
-      parameters.error("filename", fmt::format("there is no file '{}'", path));
+    const auto add = [&](std::string_view key, const std::string& fallback, GridId MediumGrid::*handle) {
+      add_pending_grid(reader, parameters, entity, path, parameters.string(key, fallback), handle);
+    };
+    add("densityname", "density", &MediumGrid::density);
+    add("temperaturename", "temperature", &MediumGrid::temperature);
   }
-  parameters.messages().warning(parameters.source(), "files of grids are not read yet; it is rendered as empty space");
   read_coefficients(reader, parameters, unit_spectrum, unit_spectrum, medium);
   read_temperature(parameters, grid);
+  medium.emission_scale = static_cast<float>(temperature_emission_scale);
   read_emission_scale(parameters, medium);
   read_common(parameters, medium);
-  medium.scale = 0;
   return medium;
 }
 
@@ -228,11 +248,12 @@ void refuse_medium(std::string_view kind, Parameters& parameters) {
   parameters.error("type", fmt::format("there is no medium of type \"{}\"{}", kind, did_you_mean(kind, medium_kinds)));
 }
 
-std::optional<Medium> read_medium(Reader& reader, std::string_view kind, Parameters& parameters, MediumGrid& grid) {
+std::optional<Medium> read_medium(Reader& reader, std::string_view kind, Parameters& parameters, MediumGrid& grid,
+                                  Entity entity) {
   if (kind == "homogeneous") return read_homogeneous(reader, parameters);
   if (kind == "uniformgrid") return read_uniform_grid(reader, parameters, grid);
   if (kind == "rgbgrid") return read_rgb_grid(reader, parameters, grid);
-  if (kind == "nanovdb") return read_nanovdb(reader, parameters, grid);
+  if (kind == "nanovdb") return read_nanovdb(reader, parameters, grid, entity);
   refuse_medium(kind, parameters);
   return std::nullopt;
 }
@@ -246,7 +267,7 @@ void make_named_medium(Reader& reader, std::string_view name, Parameters& parame
   if (!parameters.has("type")) parameters.error("type", "'string type' is missing");
   const std::string kind = parameters.string("type", "homogeneous");
   MediumGrid grid;
-  const std::optional<Medium> medium = read_medium(reader, kind, parameters, grid);
+  const std::optional<Medium> medium = read_medium(reader, kind, parameters, grid, entry.entity);
   Registry& registry = reader.scene.registry;
   registry.set(entry.entity, parameters.source());
   registry.set(entry.entity, medium.value_or(Medium{}));

@@ -14,6 +14,7 @@
 #include "engine/ecs/scene.h"
 #include "scenes/images/read_image.h"
 #include "scenes/pbrt/parameters.h"
+#include "scenes/volumes/read_grids.h"
 
 namespace metamer::pbrt {
 
@@ -109,6 +110,16 @@ struct PendingFile {
   ImageEncoding encoding = {};  // of an image
 };
 
+// A grid of a file, and the media that have it.
+struct PendingGrid {
+  struct Use {
+    Entity medium;
+    GridId MediumGrid::* handle;
+  };
+  GridRequest request;
+  std::vector<Use> uses = {};
+};
+
 struct Reader {
   Scene& scene;
   Messages messages;
@@ -133,6 +144,7 @@ struct Reader {
   std::optional<OpenCurves> open_curves = {};
   std::map<std::string, MeshId> files_of_meshes = {};
   std::vector<PendingFile> pending_files = {};
+  std::vector<PendingGrid> pending_grids = {};
   std::vector<TextureId> may_take_alpha = {};  // numbers that are their image's alpha if that turns out to have any
   Entity camera = {};
   double exposure_seconds = 1, iso = 100;

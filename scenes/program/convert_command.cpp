@@ -20,8 +20,9 @@ std::string counted(size_t count, const char* noun) {
 void tell(const std::string& path, const NativeFiles& files) {
   fmt::print("JSON  {}\n", path);
   if (!files.folder.empty())
-    fmt::print("files {}: {}, {}, {} with the JSON\n", files.folder, counted(files.meshes, "mesh"),
-               counted(files.images, "image"), short_bytes(static_cast<double>(files.bytes)));
+    fmt::print("files {}: {}, {}, {}, {} with the JSON\n", files.folder, counted(files.meshes, "mesh"),
+               counted(files.images, "image"), counted(files.grids, "grid"),
+               short_bytes(static_cast<double>(files.bytes)));
 }
 
 }  // namespace

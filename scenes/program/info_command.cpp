@@ -8,6 +8,7 @@
 #include "scenes/library.h"
 #include "scenes/program/commands.h"
 #include "scenes/program/failure.h"
+#include "scenes/program/grid_report.h"
 #include "scenes/program/load.h"
 #include "scenes/program/outputs.h"
 #include "scenes/program/progress.h"
@@ -32,6 +33,7 @@ struct SceneInfo {
   uint64_t zero_area_triangles = 0;
   size_t light_choices = 0;  // what a light sample chooses among: triangles, quadrics and so on
   size_t spectra = 0, images = 0;
+  std::vector<GridReport> grids;
   double load_seconds = 0, build_seconds = 0;
 };
 
@@ -46,6 +48,8 @@ Counts count_components(const Registry& registry) {
           {"Camera", registry.table<Camera>().size()},
           {"Name", registry.table<Name>().size()},
           {"Visibility", registry.table<Visibility>().size()},
+          {"Medium", registry.table<Medium>().size()},
+          {"MediumGrid", registry.table<MediumGrid>().size()},
           {"MediumSlot", registry.table<MediumSlot>().size()}};
 }
 
@@ -80,6 +84,7 @@ size_t scene_bytes(const Scene& scene) {
     bytes += mesh.positions.bytes() + mesh.normals.bytes() + mesh.uvs.bytes() + mesh.indices.bytes();
   for (const Curves& curves : scene.curves)
     bytes += curves.points.bytes() + curves.normals.bytes() + curves.segments.bytes();
+  for (const Grid& grid : scene.grids) bytes += grid.bytes();
   for (const Image& image : scene.images) bytes += image.rgb.capacity() * sizeof(float);
   return bytes;
 }
@@ -104,6 +109,7 @@ SceneInfo gather(const LoadedScene& loaded, const BuiltWorld& built) {
   info.light_choices = world.lights.size();
   info.spectra = scene.spectra.size();
   info.images = scene.images.size();
+  info.grids = report_grids(scene);
   info.memory = {{"scene", scene_bytes(scene)},
                  {"world", world_bytes(world)},
                  {"film", film_bytes(rendered.width(), rendered.height(), scene.settings.band_count)},
@@ -138,6 +144,7 @@ void print_table(const SceneInfo& info, const std::string& path) {
   row("materials", listed(info.materials));
   row("lights", listed(info.lights) + fmt::format("; {} emitters to choose among", info.light_choices));
   row("spectra", fmt::format("{}; {} images", info.spectra, info.images));
+  for (const GridReport& grid : info.grids) row("grid", describe(grid));
   std::string memory;
   for (const Count& m : info.memory)
     memory += fmt::format("{}{} {}", memory.empty() ? "" : ", ", m.name, short_bytes(static_cast<double>(m.count)));
@@ -188,6 +195,7 @@ void print_json(const SceneInfo& info, const std::string& path, const LoadedScen
   json["zero_area_triangles"] = static_cast<Json::UInt64>(info.zero_area_triangles);
   json["spectra"] = static_cast<Json::UInt64>(info.spectra);
   json["images"] = static_cast<Json::UInt64>(info.images);
+  json["grids"] = to_json(info.grids);
   json["memory_bytes"] = to_json(info.memory);
   json["load_seconds"] = info.load_seconds;
   json["build_seconds"] = info.build_seconds;

@@ -121,6 +121,7 @@ std::unique_ptr<World> make_world(const RenderArguments& arguments, const std::s
   refuse_frame_without_memory(rendered.width(), rendered.height(), settings.band_count, path);
   refuse_observer_without_bands(arguments.look.observer, settings.band_count);
   report.load_seconds = loaded.seconds;
+  report.grids = report_grids(loaded.scene);
   BuiltWorld built = build_world(std::move(loaded), path, {arguments.quiet, arguments.strict});
   report.build_seconds = built.seconds;
   return std::move(built.world);

@@ -76,6 +76,7 @@ Json::Value to_json(const FrameReport& report) {
   json["textures"]["cache_bytes"] = count(cache.held_bytes);
   json["textures"]["cache_tiles_read"] = count(cache.tiles_read);
   json["textures"]["cache_bytes_read"] = count(cache.read_bytes);
+  json["volumes"] = to_json(report.grids);
   return json;
 }
 

@@ -4,6 +4,7 @@
 
 #include "engine/files/atomic_file.h"
 #include "engine/film/film.h"
+#include "scenes/program/grid_report.h"
 #include "systems/image_cache.h"
 #include "systems/render.h"
 
@@ -21,6 +22,7 @@ struct FrameReport {
   size_t film_bytes = 0, world_bytes = 0;
   size_t texture_bytes = 0;  // in memory
   ImageCacheStats texture_cache;
+  std::vector<GridReport> grids;  // of the scene
   uint32_t tile_size = 0;
   bool is_interrupted = false;
 };

@@ -14,7 +14,8 @@ namespace metamer {
 namespace {
 
 const std::string schema_path = METAMER_SOURCE_DIR "/scenes/native/metamer-scene.schema.json";
-const std::string page_path = METAMER_SOURCE_DIR "/docs/scene-format.md";
+// Media of grids have a page of their own.
+const std::string page_paths[] = {METAMER_SOURCE_DIR "/docs/scene-format.md", METAMER_SOURCE_DIR "/docs/volumes.md"};
 
 Json::Value read_schema() {
   std::ifstream file(schema_path);
@@ -26,7 +27,7 @@ Json::Value read_schema() {
 
 std::string read_page() {
   std::ostringstream text;
-  text << std::ifstream(page_path).rdbuf();
+  for (const std::string& path : page_paths) text << std::ifstream(path).rdbuf();
   EXPECT_FALSE(text.str().empty());
   return text.str();
 }

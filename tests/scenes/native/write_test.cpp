@@ -35,7 +35,7 @@ TEST(NativeWriter, KnowsEveryFieldThatASceneHas) {
   EXPECT_EQ(field_count<Name>, 1u);
   EXPECT_EQ(field_count<Visibility>, 1u);
   EXPECT_EQ(field_count<Medium>, 8u);
-  EXPECT_EQ(field_count<MediumGrid>, 11u);  // their means are written, which is said
+  EXPECT_EQ(field_count<MediumGrid>, 11u);
   EXPECT_EQ(field_count<MediumSlot>, 2u);
   EXPECT_EQ(field_count<Source>, 2u);  // a new file has lines of its own
   EXPECT_EQ(sizeof(RenderSettings), 152u);
@@ -221,21 +221,42 @@ TEST(NativeWriter, SettingsAndCameraAreKept) {
   expect_converts(read.scene);
 }
 
-TEST(NativeWriter, MediaAreKeptAndGridsBecomeTheirMeans) {
+TEST(NativeWriter, MediaAndTheirGridsAreKept) {
   const ReadScene read = read_world(R"(LightSource "infinite" Translate 0 0 4
     MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [0.3 0.2 0.1] "float g" 0.3 "float scale" 2
     MakeNamedMedium "smoke" "string type" "uniformgrid" "integer nx" 2 "integer ny" 1 "integer nz" 1
-      "float density" [0.5 1] "spectrum sigma_a" [400 0.1 700 0.4]
+      "float density" [0.5 0] "spectrum sigma_a" [400 0.1 700 0.4] "float temperature" [300 1200]
+      "float temperaturescale" 2 "float temperatureoffset" -10 "point3 p1" [0.3 1 1]
+    ColorSpace "rec2020"
+    MakeNamedMedium "milk" "string type" "rgbgrid" "integer nx" 9 "integer ny" 1 "integer nz" 1
+      "rgb sigma_a" [1 2 3 4 5 6 7 8 9 1 2 3 4 5 6 7 8 9 1 2 3 4 5 6 7 8 9] "float scale" 0.1
     MediumInterface "fog" "smoke" Material "interface" Shape "sphere"
-    MediumInterface "smoke" "" Material "interface" Shape "sphere" "float radius" 2)");
+    MediumInterface "smoke" "milk" Material "interface" Shape "sphere" "float radius" 2
+    MediumInterface "milk" "" Material "interface" Shape "sphere" "float radius" 3)");
   ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
-  const TemporaryFolder folder;
-  NativeFiles files;
-  EXPECT_FALSE(write_native(read.scene, (folder.path() / "scene.json").string(), Cancellation(), files));
-  EXPECT_THAT(format_diagnostics(files.remarks), HasSubstr("medium 'smoke': grids are not supported yet"));
   const Scene back = converted(read.scene);
-  EXPECT_EQ(back.registry.table<Medium>().size(), 2u);
-  EXPECT_EQ(back.registry.table<Medium>().get(1).scale, 0.75f);
+  EXPECT_EQ(back.registry.table<Medium>().size(), 3u);
+  ASSERT_EQ(back.registry.table<MediumGrid>().size(), 2u);
+  for (uint32_t i = 0; i < 2; ++i) {
+    const MediumGrid a = read.get<MediumGrid>(i), b = back.registry.table<MediumGrid>().get(i);
+    EXPECT_EQ(a.lower, b.lower);
+    EXPECT_EQ(a.upper, b.upper);
+    EXPECT_EQ(a.temperature_offset, b.temperature_offset);
+    EXPECT_EQ(a.temperature_scale, b.temperature_scale);
+    EXPECT_EQ(a.temperature != no_index, b.temperature != no_index);
+    EXPECT_EQ(a.temperature == no_index ? BlackbodyUnit::radiance : a.blackbody, b.blackbody);
+    for (const GridId MediumGrid::*handle : {&MediumGrid::density, &MediumGrid::sigma_a, &MediumGrid::temperature}) {
+      ASSERT_EQ(a.*handle == no_index, b.*handle == no_index);
+      if (a.*handle == no_index) continue;
+      const Grid &from = read.scene.grids[a.*handle], &to = back.grids[b.*handle];
+      EXPECT_EQ(from.index_to_local, to.index_to_local);
+      EXPECT_EQ(from.origins, to.origins);
+      EXPECT_EQ(from.values, to.values);
+      EXPECT_EQ(from.lower, to.lower);
+      EXPECT_EQ(from.upper, to.upper);
+      EXPECT_EQ(from.color_space, to.color_space);
+    }
+  }
   ASSERT_NE(tiny_film(read.scene), nullptr);
   expect_converts(read.scene);
 }

@@ -1,6 +1,8 @@
 #include <cmath>
 
+#include "scenes/volumes/write_vdb.h"
 #include "tests/scenes/pbrt/read_text.h"
+#include "tests/scenes/support/volume_files.h"
 
 namespace metamer {
 namespace {
@@ -176,19 +178,67 @@ TEST(PbrtMedia, RgbGridsAreHandedOver) {
   EXPECT_NEAR(medium.emission_scale * read.scene.spectra.luminance(medium.emission), 7, 1e-3);
 }
 
-TEST(PbrtMedia, NanovdbFilesAreNamed) {
-  const TemporaryFolder folder;
-  folder.write("smoke.nvdb", "");
-  const std::string text =
-      "Camera \"perspective\" WorldBegin MakeNamedMedium \"s\" \"string type\" \"nanovdb\" \"string filename\" "
-      "\"smoke.nvdb\" \"float Lescale\" 2 \"float temperaturecutoff\" 5 \"rgb sigma_a\" [ 2 2 2 ]";
-  const ReadScene read = read_scene_at(folder.write("scene", text));
+// A file with a density of 1.5 in 20 voxels along each axis, and a temperature, as pbrt's.
+struct NanovdbFile {
+  TemporaryFolder folder;
+  NanovdbFile() {
+    Grid density, temperature;
+    density.index_to_local[3] = {1, 2, 3, 1};
+    set_dense_values(density, glm::ivec3(20), std::vector<float>(8000, 1.5f));
+    set_dense_values(temperature, glm::ivec3(4, 4, 30), std::vector<float>(480, 900.0f));
+    const NamedGrid grids[] = {{"density", &density}, {"temperature", &temperature}, {"heat", &temperature}};
+    const std::string vdb = (folder.path() / "smoke.vdb").string();
+    EXPECT_FALSE(write_vdb(vdb, grids));
+    write_nvdb(vdb, (folder.path() / "smoke.nvdb").string(), "float", "zip");
+  }
+  ReadScene read(const std::string& world) const {
+    return read_scene_at(folder.write("scene", "Camera \"perspective\" WorldBegin " + world));
+  }
+};
+
+TEST(PbrtMedia, NanovdbFilesAreRead) {
+  const NanovdbFile file;
+  const ReadScene read = file.read(
+      "Translate 0 5 0 MakeNamedMedium \"s\" \"string type\" \"nanovdb\" \"string filename\" \"smoke.nvdb\" "
+      "\"float Lescale\" 2 \"float temperaturecutoff\" 5 \"float temperaturescale\" 3 \"rgb sigma_a\" [ 2 2 2 ]");
   ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
-  const MediumGrid grid = read.get<MediumGrid>();
-  EXPECT_EQ(read.scene.names[grid.file], (folder.path() / "smoke.nvdb").string());
-  EXPECT_EQ(grid.temperature_offset, 5.0f);
-  EXPECT_EQ(read.get<Medium>().emission_scale, 2.0f);
+  const MediumGrid medium = read.get<MediumGrid>();
+  EXPECT_EQ(grid_value(read.scene.grids[medium.density], {19, 0, 0}).x, 1.5f);
+  EXPECT_EQ(grid_value(read.scene.grids[medium.temperature], {0, 0, 29}).x, 900.0f);
+  EXPECT_EQ(medium.temperature_offset, 5.0f);
+  EXPECT_EQ(medium.temperature_scale, 3.0f);
+  EXPECT_EQ(medium.blackbody, BlackbodyUnit::peak);
+  EXPECT_EQ(medium.lower, glm::vec3(0, 0, 0)) << "the box of the active voxels of both";
+  EXPECT_EQ(medium.upper, glm::vec3(21, 22, 30));
+  EXPECT_FLOAT_EQ(read.get<Medium>().emission_scale, 2 / 683.0f);
   EXPECT_NEAR(read.scene.spectra.value(read.get<Medium>().sigma_a, 550), 2, 1e-3);
+  EXPECT_EQ(read.scene.registry.get<Transform>(read.entity<MediumGrid>()).row1.w, 5.0f);
+}
+
+TEST(PbrtMedia, AGridOfAFileIsReadOnceForAllMedia) {
+  const NanovdbFile file;
+  const std::string medium = "\"string type\" \"nanovdb\" \"string filename\" \"smoke.nvdb\" ";
+  const ReadScene read = file.read("MakeNamedMedium \"a\" " + medium + "Translate 1 0 0 MakeNamedMedium \"b\" " +
+                                   medium + "MakeNamedMedium \"c\" " + medium + "\"string temperaturename\" \"heat\"");
+  ASSERT_TRUE(read.ok) << format_diagnostics(read.diagnostics);
+  EXPECT_EQ(read.scene.grids.size(), 3u);
+  EXPECT_EQ(read.get<MediumGrid>(0).density, read.get<MediumGrid>(1).density);
+  EXPECT_EQ(read.get<MediumGrid>(1).density, read.get<MediumGrid>(2).density);
+  EXPECT_NE(read.get<MediumGrid>(1).temperature, read.get<MediumGrid>(2).temperature);
+}
+
+TEST(PbrtMedia, NanovdbFilesNeedADensityButNoTemperature) {
+  const NanovdbFile file;
+  const std::string medium = "MakeNamedMedium \"a\" \"string type\" \"nanovdb\" \"string filename\" \"smoke.nvdb\"\n";
+  const ReadScene cold = file.read(medium + "\"string temperaturename\" \"t\"");
+  ASSERT_TRUE(cold.ok) << format_diagnostics(cold.diagnostics);
+  EXPECT_EQ(cold.get<MediumGrid>().temperature, no_index);
+  const ReadScene empty = file.read(medium + "\"string densityname\" \"densty\"");
+  EXPECT_FALSE(empty.ok);
+  EXPECT_THAT(format_diagnostics(empty.diagnostics),
+              testing::HasSubstr(
+                  ":1: error: '" + (file.folder.path() / "smoke.nvdb").string() +
+                  "': there is no grid 'densty' (did you mean 'density'?) in it; there are: 'density', 'heat', "));
 }
 
 struct Mistake {
