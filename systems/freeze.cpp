@@ -47,7 +47,8 @@ std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics&
     const SpectrumId white = world->spectra.add_white(ColorSpace::srgb);
     world->ambient_light = world->spectra.scaled(white, 1 / world->spectra.luminance(white)).id;
   }
-  world->indirect_limit = scene.settings.clamp_indirect;
+  // Of the mean of four columns, of which so many carry light.
+  world->indirect_limit = scene.settings.clamp_indirect * static_cast<float>(live_wavelengths(scene.settings)) / 4;
   if (scene.settings.color == ColorMode::spectral)  // there a radiance, that of equal energy of this luminance
     world->indirect_limit /= static_cast<float>(world->spectra.luminance(world->spectra.add_constant(1).id));
   build_coefficients(*world);

