@@ -72,9 +72,9 @@ void MediumGrids::add_file(const JsonObject& object, Use use) {
   const std::string path = resolve_path(file, reader.document().path());
   const bool is_temperature = use.handle == &MediumGrid::temperature;
   for (Pending& known : pending_) {
-    const GridRequest& request = known.request;
-    if (request.path != path || request.grid_name != name || request.may_be_negative != is_temperature) continue;
-    if (known.space == space) return known.uses.push_back(use);
+    if (known.request.path != path || known.request.grid_name != name || known.space != space) continue;
+    known.request.may_be_negative = known.request.may_be_negative && is_temperature;
+    return known.uses.push_back(use);
   }
   const Json::Value* place = object.has("grid") ? object.find("grid") : object.find("file");
   GridRequest request{path, name, reader.document().at(*place), is_temperature};
@@ -90,7 +90,7 @@ void MediumGrids::read_grid(Entity medium, const JsonObject& object, std::string
   if (!grid.is_valid()) return;
   if (is_temperature) {
     grids.temperature_offset = grid.number_f("offset", any_number, 0);
-    grids.temperature_scale = grid.number_f("scale", any_number, 1);
+    grids.temperature_scale = grid.number_f("scale", not_negative, 1);
     if (grid.boolean("normalized", false)) grids.blackbody = BlackbodyUnit::peak;
   }
   const std::string_view source = grid.one_of(sources);

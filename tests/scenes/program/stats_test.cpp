@@ -68,6 +68,30 @@ TEST_F(Reports, InfoCountsEveryKindOfMaterial) {
   for (const std::string& name : materials.getMemberNames()) EXPECT_GT(materials[name].asUInt(), 0u) << name;
 }
 
+TEST_F(Reports, InfoAndStatsListTheGridsOfMedia) {
+  const std::string scene = METAMER_SOURCE_DIR "/tests/scenes/native/every_key.json";
+  const ProgramResult result = run({"info", scene, "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json::Value info = parse_json(result.out);
+  EXPECT_EQ(info["components"]["MediumGrid"].asUInt(), 2u);
+  ASSERT_EQ(info["grids"].size(), 5u);  // noise first, then files
+  EXPECT_EQ(info["grids"][0]["name"].asString(), "emission_grid");
+  EXPECT_EQ(info["grids"][0]["type"].asString(), "noise");
+  const Json::Value density = info["grids"][2], color = info["grids"][3];
+  EXPECT_THAT(density["name"].asString(), testing::EndsWith("puff.vdb:density"));
+  EXPECT_EQ(density["type"].asString(), "float");
+  EXPECT_EQ(density["voxels"].asUInt(), 512u);
+  EXPECT_EQ(density["bytes"].asUInt(), 512u * 4 + 12);
+  EXPECT_EQ(density["extent"][2].asUInt(), 4u);
+  EXPECT_NEAR(density["mean"][0].asDouble(), 0.25 * (9 * 21 + 0) / 64, 1e-6);  // 0 to 6 nine times, and one more 0
+  EXPECT_EQ(color["type"].asString(), "vec3s, 3 channels");
+  EXPECT_EQ(color["mean"].size(), 3u);
+  EXPECT_THAT(run({"info", scene}).out, HasSubstr("puff.vdb:density: float, 4x4x4, 512 voxels stored, "));
+
+  ASSERT_EQ(run({"render", scene, "--stats", "s.json", "-q", "--size", "8x8", "--spp", "1"}).exit_code, 0);
+  EXPECT_EQ(parse_json(bytes("s.json"))["volumes"], info["grids"]);
+}
+
 TEST_F(Reports, InfoTellsWarnings) {
   std::string scene(small_scene);
   scene.insert(scene.find("\"entities\": [") + 13, R"({"geometry": {"type": "mesh", "mesh": "flat"}},)");

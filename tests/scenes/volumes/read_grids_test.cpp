@@ -203,7 +203,8 @@ TEST(ReadGrids, MistakesAreNamed) {
                                                  "1.342e+08 bricks of 8x8x8 voxels are 276 GB; the most is"));
   EXPECT_THAT(mistake_of("/nowhere/x.vdb", "a"), HasSubstr("/nowhere/x.vdb"));
   const std::string nano = files().nano("float", "none");
-  EXPECT_THAT(mistake_of(nano, "densty"), HasSubstr("(did you mean 'density'?) in it; there are: 'color', 'density', "));
+  EXPECT_THAT(mistake_of(nano, "densty"),
+              HasSubstr("(did you mean 'density'?) in it; there are: 'color', 'density', "));
   EXPECT_THAT(mistake_of(nano, "integer"), HasSubstr("its type is 'int32'"));
   EXPECT_THAT(mistake_of(nano, "surface"), HasSubstr("it is a level set"));
   EXPECT_THAT(mistake_of(nano, "negative"), HasSubstr("at voxel (1, 2, 3) is -0.5"));
