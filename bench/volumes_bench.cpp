@@ -71,12 +71,17 @@ Sky make_sky(bool has_cells, bool is_chromatic, GridLookup lookup) {
 
 // Rays from a sphere around the cloud to places in it.
 void aim(Batch& batch) {
-  const auto random = [n = 0u]() mutable { return 2 * double{unit_float(hash_u32(++n))} - 1; };
+  auto random = [n = 0u]() mutable { return 2 * double{unit_float(hash_u32(++n))} - 1; };
   PathStream& paths = batch.paths;
   paths.size = batch_capacity;
+  const auto in_cube = [&] {
+    glm::dvec3 p;
+    for (int c = 0; c < 3; ++c) p[c] = random();
+    return p;
+  };
   for (uint32_t i = 0; i < paths.size; ++i) {
-    const glm::dvec3 origin = 2.0 * glm::normalize(glm::dvec3(random(), random(), random()));
-    const glm::dvec3 direction = glm::normalize(0.6 * glm::dvec3(random(), random(), random()) - origin);
+    const glm::dvec3 origin = 2.0 * glm::normalize(in_cube());
+    const glm::dvec3 direction = glm::normalize(0.6 * in_cube() - origin);
     for (int c = 0; c < 3; ++c) {
       paths.origin[static_cast<size_t>(c)][i] = static_cast<float>(origin[c]);
       paths.direction[static_cast<size_t>(c)][i] = static_cast<float>(direction[c]);

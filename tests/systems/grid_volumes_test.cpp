@@ -411,6 +411,20 @@ TEST(GridVolumes, VanishInTheFurnaceOfRgbMode) {
   }
 }
 
+// What a cell holds at least is taken out without chance.
+TEST(GridVolumes, OfOneValueTransmitExactly) {
+  SceneBuilder b = beam(16, 0);
+  b.light(LightKind::environment, unit_spectrum, 1);
+  MediumGrid grid = unit_box();
+  const glm::ivec3 size(40);
+  grid.density =
+      add_grid(b, size, voxels_in_box(size, glm::dvec3(-2), glm::dvec3(2)), [](int, int, int) { return 1.5; });
+  b.scene.meshes.push_back(cube_mesh());
+  b.separate(b.add(mesh(0), b.interface(), stretched(2, 2, 2)), grid_medium(b, slope(b, 0.2, 2), zero_spectrum, grid));
+  expect_every_path(
+      trace_radiances(*b.freeze()), [](double nm) { return std::exp(-3 * slope_at(nm, 0.2, 2)); }, 1e-5);
+}
+
 // A grid with the same number everywhere is a homogeneous medium: both against each other, band by band.
 TEST(GridVolumes, OfOneValueAreHomogeneous) {
   for (const bool chromatic : {false, true}) {
