@@ -35,9 +35,10 @@ std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics&
   const size_t errors_before = diagnostics.error_count();
   build_textures(scene, disposable, *world, diagnostics);
   if (diagnostics.error_count() > errors_before) return nullptr;  // what follows needs them
-  const std::vector<MaterialRow> materials = build_materials(scene, *world, diagnostics);
+  std::vector<MaterialRow> materials = build_materials(scene, *world, diagnostics);
   const std::vector<VolumeSides> volumes = build_volumes(scene, to_world, *world, diagnostics);
   if (disposable != nullptr) std::vector<Grid>().swap(disposable->grids);
+  fill_solids(volumes, materials, *world, diagnostics);
   build_geometry(scene, to_world, materials, volumes, *world, diagnostics);
   if (disposable != nullptr) std::vector<Mesh>().swap(disposable->meshes);
   build_lights(scene, to_world, *world, diagnostics);

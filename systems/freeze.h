@@ -46,6 +46,12 @@ struct VolumeSides {
 std::vector<VolumeSides> build_volumes(const Scene& scene, std::span<const glm::dmat4> to_world, World& world,
                                        Diagnostics& diagnostics);
 
+// Solids that paths follow and whose surfaces have a medium inside get rows of World::media of their own, by which the
+// medium is nested as the solids are. Changes their rows in `materials`; both by entity index. Errors: more media than
+// paths can tell apart.
+void fill_solids(std::span<const VolumeSides> sides, std::vector<MaterialRow>& materials, World& world,
+                 Diagnostics& diagnostics);
+
 // The alpha of the last object. A constant one of 0 is not there for any ray, one of 1 is no mask.
 void build_mask(TextureId texture, World& world);
 // How the lights of the last object are found.
