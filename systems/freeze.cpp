@@ -17,8 +17,8 @@ std::array<float, 9> white_balance(const RenderSettings& settings) {
   return rounded;
 }
 
-// `disposable` is the scene if it is not needed any more, else null.
-std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics& diagnostics) {
+// All but what Embree makes of it. `disposable` is the scene if it is not needed any more, else null.
+std::unique_ptr<World> lay_out(const Scene& scene, Scene* disposable, Diagnostics& diagnostics) {
   auto world = std::make_unique<World>();
   world->settings = scene.settings;
   world->spectra = scene.spectra;
@@ -59,6 +59,11 @@ std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics&
                                                         ? std::string("1 triangle has")
                                                         : fmt::format("{} triangles have", world->zero_area_triangles)),
         Strict::allows);
+  return world;
+}
+
+std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics& diagnostics) {
+  std::unique_ptr<World> world = lay_out(scene, disposable, diagnostics);
   if (diagnostics.has_errors()) return nullptr;
   build_accelerator(*world);
   build_camera_media(*world);
@@ -95,6 +100,8 @@ void reserve_triangles(const Scene& scene, World& world) {
 std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   return build(scene, nullptr, diagnostics);
 }
+
+void check(const Scene& scene, Diagnostics& diagnostics) { lay_out(scene, nullptr, diagnostics); }
 
 std::unique_ptr<World> freeze(Scene&& scene, Diagnostics& diagnostics) { return build(scene, &scene, diagnostics); }
 

@@ -11,7 +11,9 @@ namespace metamer {
 // Builds the world: transforms, materials by kind, geometry, lights, camera, acceleration structure. Mistakes go to
 // `diagnostics` with the place where the user made them; with errors among them the result is null.
 std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics);
-// The same, but meshes and images are given back as soon as the world has them: less memory while trees are built.
+// Only the mistakes that freeze would report. The scene may be one that was read with mistakes.
+void check(const Scene& scene, Diagnostics& diagnostics);
+// Freezes, too, but meshes and images are given back as soon as the world has them: less memory while trees are built.
 std::unique_ptr<World> freeze(Scene&& scene, Diagnostics& diagnostics);
 
 // Object to world of every entity, by entity index. Errors: a cycle of parents, a singular or non-finite matrix.
