@@ -161,7 +161,8 @@ std::string shape_text(const Scene& scene, Entity entity) {
     const Curves& curves = scene.curves[g.curves];
     text = fmt::format("{} curves of {} segments from {} to {}",
                        names[static_cast<size_t>(g.kind) - static_cast<size_t>(ShapeKind::flat_curves)],
-                       curves.segments.size(), numbers(curves.points.front()), numbers(curves.points.back()));
+                       curves.segments.size(), numbers(curves.points[0]),
+                       numbers(curves.points[curves.points.size() - 1]));
   }
   if (std::isfinite(g.z_min) || std::isfinite(g.z_max)) text += fmt::format(" z {:.4g} to {:.4g}", g.z_min, g.z_max);
   if (g.phi_max_deg != 360) text += fmt::format(" phi {:.4g}", g.phi_max_deg);
