@@ -16,7 +16,7 @@ void for_each_column(ShadeStream& s, const Visit& visit) {
   visit_columns(visit, s.wo, s.position, s.normal, s.shading_normal, s.tangent, s.uv, s.dp_du, s.dp_dv, s.dn_du,
                 s.dn_dv, s.distance, s.offset, s.material, s.light, s.lambda_nm, s.throughput, s.pdf_direction,
                 s.eta_scale, s.pixel_seed, s.index, s.slot, s.media, s.time, s.reflectance, s.transmittance, s.alpha,
-                s.volumes, s.share, s.footprint, s.base_alpha, s.thickness, s.asymmetry);
+                s.volume, s.volumes, s.share, s.footprint, s.base_alpha, s.thickness, s.asymmetry);
   visit_columns(visit, s.light_direction, s.light_radiance, s.light_distance, s.light_pdf);
   visit_columns(visit, s.next_direction, s.next_weight, s.next_pdf, s.next_eta_scale, s.next_media);
 }

@@ -2,7 +2,7 @@
 // columns together stay within a core's L2 cache. Nothing here outlives a batch, except the slots, which live
 // until the batch is accumulated.
 //
-// Per path: PathStream 112 bytes, twice (this bounce's and the next one's rays); HitStream 32; ShadeStream 372;
+// Per path: PathStream 112 bytes, twice (this bounce's and the next one's rays); HitStream 32; ShadeStream 376;
 // ShadowStream 80; Slots 60. Columns that a scene has no use for are not touched.
 #pragma once
 #include <array>
@@ -171,6 +171,7 @@ struct ShadeStream {
   // Of layered materials: of the base; optical; mean cosine. `transmittance` is the layer's albedo there.
   Columns<float, 2> base_alpha;
   float *thickness, *asymmetry;
+  uint32_t* volume;              // that the ray came through, where `carries_volumes`
   Columns<uint32_t, 2> volumes;  // on the inside and the outside of the surface, where `carries_volumes`
   bool carries_volumes = false;
   bool carries_keys = false;  // shadow rays take the keys of their paths along

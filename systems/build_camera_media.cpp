@@ -96,6 +96,8 @@ void build_camera_media(World& world) {
   std::stable_sort(found.begin(), found.end(),
                    [&](uint32_t a, uint32_t b) { return world.media.priority[a] > world.media.priority[b]; });
   found.resize(media_stack_size, 0);
+  if (world.camera_volume == 0 && world.media.volume[found[0]] != keeps_volume)
+    world.camera_volume = world.media.volume[found[0]];
   world.camera_media[0] = found[0] | found[1] << 16;
   world.camera_media[1] = found[2] | found[3] << 16;
 }

@@ -133,6 +133,7 @@ uint32_t add_medium(const Material& material, World& world) {
   media.kappa.push_back(material.kappa);
   media.priority.push_back(priority);
   media.dispersive.push_back(!world.spectra.is_constant(material.eta));
+  media.volume.push_back(keeps_volume);
   return static_cast<uint32_t>(media.eta.size() - 1);
 }
 
@@ -171,6 +172,7 @@ void add_vacuum(MediumColumns& media) {
   media.kappa.push_back(zero_spectrum);
   media.priority.push_back(0);
   media.dispersive.push_back(0);
+  media.volume.push_back(keeps_volume);
 }
 
 void check_optics(const Scene& scene, Entity entity, const Material& material, Diagnostics& diagnostics) {
@@ -250,9 +252,6 @@ std::vector<MaterialRow> build_materials(const Scene& scene, World& world, Diagn
     own[entity.index] = add_material(material, world);
     add_bump(scene, material, own[entity.index], world, diagnostics);
   });
-  if (world.media.eta.size() > largest_medium + 1)
-    diagnostics.error({}, fmt::format("the scene has {} media that paths follow; at most {} are possible",
-                                      world.media.eta.size() - 1, largest_medium));
   Material grey;
   grey.reflectance = world.spectra.add_constant(0.5).id;
   std::optional<MaterialRow> fallback;

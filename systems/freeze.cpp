@@ -17,8 +17,8 @@ std::array<float, 9> white_balance(const RenderSettings& settings) {
   return rounded;
 }
 
-// `disposable` is the scene if it is not needed any more, else null.
-std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics& diagnostics) {
+// All but what Embree makes of it. `disposable` is the scene if it is not needed any more, else null.
+std::unique_ptr<World> lay_out(const Scene& scene, Scene* disposable, Diagnostics& diagnostics) {
   auto world = std::make_unique<World>();
   world->settings = scene.settings;
   world->spectra = scene.spectra;
@@ -35,9 +35,10 @@ std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics&
   const size_t errors_before = diagnostics.error_count();
   build_textures(scene, disposable, *world, diagnostics);
   if (diagnostics.error_count() > errors_before) return nullptr;  // what follows needs them
-  const std::vector<MaterialRow> materials = build_materials(scene, *world, diagnostics);
+  std::vector<MaterialRow> materials = build_materials(scene, *world, diagnostics);
   const std::vector<VolumeSides> volumes = build_volumes(scene, to_world, *world, diagnostics);
   if (disposable != nullptr) std::vector<Grid>().swap(disposable->grids);
+  fill_solids(volumes, materials, *world, diagnostics);
   build_geometry(scene, to_world, materials, volumes, *world, diagnostics);
   if (disposable != nullptr) std::vector<Mesh>().swap(disposable->meshes);
   build_lights(scene, to_world, *world, diagnostics);
@@ -59,6 +60,11 @@ std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics&
                                                         ? std::string("1 triangle has")
                                                         : fmt::format("{} triangles have", world->zero_area_triangles)),
         Strict::allows);
+  return world;
+}
+
+std::unique_ptr<World> build(const Scene& scene, Scene* disposable, Diagnostics& diagnostics) {
+  std::unique_ptr<World> world = lay_out(scene, disposable, diagnostics);
   if (diagnostics.has_errors()) return nullptr;
   build_accelerator(*world);
   build_camera_media(*world);
@@ -95,6 +101,8 @@ void reserve_triangles(const Scene& scene, World& world) {
 std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics) {
   return build(scene, nullptr, diagnostics);
 }
+
+void check(const Scene& scene, Diagnostics& diagnostics) { lay_out(scene, nullptr, diagnostics); }
 
 std::unique_ptr<World> freeze(Scene&& scene, Diagnostics& diagnostics) { return build(scene, &scene, diagnostics); }
 

@@ -11,7 +11,9 @@ namespace metamer {
 // Builds the world: transforms, materials by kind, geometry, lights, camera, acceleration structure. Mistakes go to
 // `diagnostics` with the place where the user made them; with errors among them the result is null.
 std::unique_ptr<World> freeze(const Scene& scene, Diagnostics& diagnostics);
-// The same, but meshes and images are given back as soon as the world has them: less memory while trees are built.
+// Only the mistakes that freeze would report. The scene may be one that was read with mistakes.
+void check(const Scene& scene, Diagnostics& diagnostics);
+// Freezes, too, but meshes and images are given back as soon as the world has them: less memory while trees are built.
 std::unique_ptr<World> freeze(Scene&& scene, Diagnostics& diagnostics);
 
 // Object to world of every entity, by entity index. Errors: a cycle of parents, a singular or non-finite matrix.
@@ -41,6 +43,12 @@ struct VolumeSides {
 // coefficients, g not between -1 and 1, a slot that names an entity without Medium.
 std::vector<VolumeSides> build_volumes(const Scene& scene, std::span<const glm::dmat4> to_world, World& world,
                                        Diagnostics& diagnostics);
+
+// Solids that paths follow and whose surfaces have a medium inside get rows of World::media of their own, by which the
+// medium is nested as the solids are. Changes their rows in `materials`; both by entity index. Errors: more media than
+// paths can tell apart.
+void fill_solids(std::span<const VolumeSides> sides, std::vector<MaterialRow>& materials, World& world,
+                 Diagnostics& diagnostics);
 
 // The alpha of the last object. A constant one of 0 is not there for any ray, one of 1 is no mask.
 void build_mask(TextureId texture, World& world);

@@ -105,6 +105,7 @@ struct MediaCrossing {
   VU outside;                // what fills the space on the other side of the material's own
   MF followed;               // the material has a medium
   MF inside;                 // the ray came from inside; by the geometric normal, as rays start on a side of it
+  MF real;                   // the material's medium is the first that begins or ends there
   MF passed;                 // a boundary without optical effect
   MediaStack before, after;  // of the ray that came, and behind the boundary
 };
@@ -120,8 +121,8 @@ HWY_INLINE MediaCrossing media_crossing(const World& world, const ShadeStream& s
   const VU top = crossing.before.entry[0];
   crossing.outside = hn::IfThenElse(uint_mask(crossing.inside), left.entry[0], top);
   const MF ends = is_same(top, medium), begins = is_same(entered.entry[0], medium);
-  const MF real = hn::Or(hn::And(crossing.inside, ends), hn::AndNot(crossing.inside, begins));
-  const MF changes = hn::AndNot(is_same(crossing.outside, medium), real);
+  crossing.real = hn::Or(hn::And(crossing.inside, ends), hn::AndNot(crossing.inside, begins));
+  const MF changes = hn::AndNot(is_same(crossing.outside, medium), crossing.real);
   crossing.passed = hn::AndNot(changes, crossing.followed);
   return crossing;
 }

@@ -24,9 +24,36 @@ void remember_unseen(const World& world, const Group& group, ShadeStream& shade)
   }
 }
 
+// What fills the sides of followed boundaries, by priority: behind one that does not count what was there before; else
+// inside the medium of that side, outside that of the solid that begins there, or where that has none the medium of
+// that side. A solid without a medium displaces what the solid around it is filled with.
+void fill_sides(const World& world, const Group& group, ShadeStream& shade) {
+  const VU keeps = splat_u(keeps_volume);
+  for (size_t i = group.begin; i < group.padded_end(); i += lane_count()) {
+    const auto live = hn::Ne(load(shade.slot, i), splat_u(dead_lane));
+    const VI row = as_index(hn::IfThenElseZero(live, load(shade.material, i)));
+    const MediaCrossing crossing = media_crossing(world, shade, i, gather(world.dielectric.medium.data(), row));
+    if (hn::AllFalse(FloatTag(), crossing.followed)) continue;
+    const VU before = load(shade.volume, i), inside = load(shade.volumes[0], i), outside = load(shade.volumes[1], i);
+    const VU left = gather(world.media.volume.data(), as_index(crossing.before.entry[0]));
+    const VU around = gather(world.media.volume.data(), as_index(crossing.outside));
+    const MF has_sides = hn::Not(is_same(inside, outside));
+    const MF displaces = hn::AndNot(hn::Or(crossing.inside, has_sides), hn::Not(is_same(left, keeps)));
+    const VU sides[2] = {hn::IfThenZeroElse(uint_mask(displaces), inside),
+                         hn::IfThenElse(uint_mask(is_same(around, keeps)), outside, around)};
+    for (size_t k = 0; k < 2; ++k) {
+      const VU real = hn::IfThenElse(uint_mask(crossing.real), sides[k], before);
+      store(hn::IfThenElse(uint_mask(crossing.followed), real, k == 0 ? inside : outside), shade.volumes[k], i);
+    }
+  }
+}
+
 void media_kernel(const World& world, ShadeStream& shade) {
-  for (const ShadeKind kind : {ShadeKind::rough_dielectric, ShadeKind::dielectric})
-    remember_unseen(world, shade.groups[static_cast<size_t>(kind)], shade);
+  for (const ShadeKind kind : {ShadeKind::rough_dielectric, ShadeKind::dielectric}) {
+    const Group& group = shade.groups[static_cast<size_t>(kind)];
+    remember_unseen(world, group, shade);
+    if (shade.carries_volumes) fill_sides(world, group, shade);
+  }
   const size_t miss_begin = shade.groups[static_cast<size_t>(ShadeKind::miss)].begin;
   for (size_t i = 0; i < shade.size; i += lane_count()) {
     for (size_t k = 0; k < 2; ++k) store(load(shade.media[k], i), shade.next_media[k], i);

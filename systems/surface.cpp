@@ -214,6 +214,7 @@ HWY_INLINE void store_volumes(const World& world, const PathStream& paths, VI pa
   const VU inside = gather(world.objects.volume_inside.data(), object);
   const VU outside = gather(world.objects.volume_outside.data(), object);
   const auto kept = hn::Eq(inside, splat_u(keeps_volume));
+  store(before, shade.volume, i);
   store(hn::IfThenElse(kept, before, inside), shade.volumes[0], i);
   store(hn::IfThenElse(kept, before, outside), shade.volumes[1], i);
 }

@@ -22,26 +22,47 @@ uint32_t medium_of(const World& world, uint32_t object) {
   return enters ? world.dielectric.medium[world.objects.material[object]] : 0;
 }
 
+namespace {
+
+uint32_t declared_volume(const World& world, const ReferenceHit& hit, const Vector& direction) {
+  const bool outwards = glm::dot(direction, hit.outside) > 0;
+  return outwards ? world.objects.volume_outside[hit.object] : world.objects.volume_inside[hit.object];
+}
+
+}  // namespace
+
 ReferenceMedia crossed(const World& world, const ReferenceMedia& media, const ReferenceHit& hit,
                        const Vector& direction) {
   ReferenceMedia result = media;
-  result.volume = volume_towards(world, media, hit, direction);
   const uint32_t medium = medium_of(world, hit.object);
-  if (medium == 0) return result;
+  if (medium == 0) {
+    result.volume = volume_towards(world, media, hit, direction);
+    return result;
+  }
   if (glm::dot(direction, hit.outside) < 0) {
     result.push_back(medium);
   } else {
     const auto last = std::find(result.rbegin(), result.rend(), medium);
     if (last != result.rend()) result.erase(std::next(last).base());
   }
+  // Sides count where the space gets filled by another solid, and where that has no medium of its own.
+  const uint32_t top = fills(world, result), left = fills(world, media);
+  if (top == left) return result;
+  const bool has_sides = world.objects.volume_inside[hit.object] != keeps_volume;
+  if (world.media.volume[top] != keeps_volume)
+    result.volume = world.media.volume[top];
+  else if (has_sides)
+    result.volume = declared_volume(world, hit, direction);
+  else if (top == medium && world.media.volume[left] != keeps_volume)
+    result.volume = 0;
   return result;
 }
 
 uint32_t volume_towards(const World& world, const ReferenceMedia& media, const ReferenceHit& hit,
                         const Vector& direction) {
   if (hit.object == no_index || world.objects.volume_inside[hit.object] == keeps_volume) return media.volume;
-  const bool outwards = glm::dot(direction, hit.outside) > 0;
-  return outwards ? world.objects.volume_outside[hit.object] : world.objects.volume_inside[hit.object];
+  if (medium_of(world, hit.object) != 0) return media.volume;  // without crossing it
+  return declared_volume(world, hit, direction);
 }
 
 ReferenceVolume volume_at(const World& world, uint32_t volume, const Vector& position, double lambda_nm) {

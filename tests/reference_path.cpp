@@ -312,8 +312,8 @@ struct Tracer {
   ReferenceMedia next_media(const ReferenceMedia& media, const ReferenceHit& hit, const Vector& came,
                             const Vector& direction) const {
     const bool crosses = glm::dot(came, hit.outside) * glm::dot(direction, hit.outside) > 0;
+    if (hit.object != no_index && crosses) return crossed(world, media, hit, direction);
     ReferenceMedia next = media;
-    if (hit.object != no_index && crosses) next = crossed(world, media, hit, direction);
     next.volume = volume_towards(world, media, hit, direction);
     return next;
   }

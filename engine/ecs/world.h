@@ -119,11 +119,16 @@ struct MixRow {
   float amount = 0;
   uint32_t amount_texture = no_index;  // program of TextureSet in its place
 };
+inline constexpr uint32_t keeps_volume = 0xffffffffu;  // in place of a row of volumes: what was there before
+
 // What paths remember being inside of. Row 0 is the vacuum, of priority 0; all others have 1 at least.
 struct MediumColumns {
   Column<uint32_t> eta, kappa;  // SpectrumId
   Column<uint32_t> priority;    // where solids overlap, the highest fills the space
   Column<uint32_t> dispersive;
+  // Row of VolumeColumns that fills the solid where no other of higher priority does, by the sides of its surface;
+  // keeps_volume: nothing of its own.
+  Column<uint32_t> volume;
 };
 // A path's media, highest priority first: four rows of 16 bits, the first in the low half of [0].
 inline constexpr uint32_t media_stack_size = 4, largest_medium = 0xffff;
@@ -136,7 +141,6 @@ struct VolumeColumns {
   Column<uint32_t> scatters;  // 0: rays go straight through, whatever is absorbed on the way
   Column<uint32_t> grid;  // row of World::grid_volumes: the coefficients are multiplied by grids; no_index: they hold
 };
-inline constexpr uint32_t keeps_volume = 0xffffffffu;
 // Beside those of component Visibility: shadow rays that look for the interfaces on their way.
 inline constexpr uint32_t visible_to_crossings = 8;
 

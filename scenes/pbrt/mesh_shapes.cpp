@@ -5,13 +5,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "scenes/meshes/bilinear_patches.h"
 #include "scenes/meshes/loop_subdivision.h"
 #include "scenes/meshes/read_mesh.h"
 
 namespace metamer::pbrt {
 namespace {
-
-constexpr uint32_t patch_steps = 16;  // a patch that is not flat becomes patch_steps^2 quadrilaterals
 
 std::string place_name(const Reader& reader, Source source) {
   return fmt::format("{}:{}", reader.scene.names[source.file], source.line);
@@ -62,53 +61,11 @@ bool read_vertices(Parameters& parameters, Mesh& mesh, uint32_t per_face) {
   return parameters.messages().diagnostics.error_count() == errors;
 }
 
-std::optional<ReadMesh> add_mesh(Reader& reader, Parameters& parameters, Mesh&& mesh, size_t triangles_per_face) {
+std::optional<ReadMesh> add_mesh(Reader& reader, Parameters& parameters, Mesh&& mesh, size_t faces = 0) {
   if (!validate_mesh(mesh, parameters.messages().at(parameters.source()), reader.messages.diagnostics))
     return std::nullopt;
   reader.scene.meshes.push_back(std::move(mesh));
-  return ReadMesh{static_cast<MeshId>(reader.scene.meshes.size() - 1), triangles_per_face};
-}
-
-// Whether the four corners lie in one plane and form a convex quadrilateral, which two triangles fill exactly.
-bool is_flat_and_convex(const Mesh& patches, const uint32_t* corner) {
-  // Around the edge: 00, 10, 11, 01.
-  const glm::dvec3 p[4] = {patches.positions[corner[0]], patches.positions[corner[1]], patches.positions[corner[3]],
-                           patches.positions[corner[2]]};
-  const glm::dvec3 normal = glm::cross(p[2] - p[0], p[3] - p[1]);
-  const double size = std::sqrt(glm::length(normal));
-  if (!(size > 0)) return true;
-  if (std::abs(glm::dot(glm::normalize(normal), p[1] - p[0] + p[3] - p[2])) > 1e-5 * size) return false;
-  for (int i = 0; i < 4; ++i) {
-    if (glm::dot(normal, glm::cross(p[(i + 1) % 4] - p[i], p[(i + 2) % 4] - p[(i + 1) % 4])) < 0) return false;
-  }
-  return true;
-}
-
-template <class T>
-T bilinear(const Column<T>& column, const uint32_t* corner, float u, float v) {
-  const T bottom = column[corner[0]] * (1 - u) + column[corner[1]] * u;
-  const T top = column[corner[2]] * (1 - u) + column[corner[3]] * u;
-  return bottom * (1 - v) + top * v;
-}
-
-// The normal of pbrt's patch is dp/du x dp/dv, hence the counter-clockwise order 00, 10, 11, 01.
-void add_patch(const Mesh& patches, const uint32_t* corner, uint32_t steps, Mesh& mesh) {
-  const auto first = static_cast<uint32_t>(mesh.positions.size());
-  for (uint32_t row = 0; row <= steps; ++row) {
-    for (uint32_t column = 0; column <= steps; ++column) {
-      const float u = static_cast<float>(column) / static_cast<float>(steps),
-                  v = static_cast<float>(row) / static_cast<float>(steps);
-      mesh.positions.push_back(bilinear(patches.positions, corner, u, v));
-      if (!patches.normals.empty()) mesh.normals.push_back(bilinear(patches.normals, corner, u, v));
-      mesh.uvs.push_back(patches.uvs.empty() ? glm::vec2(u, v) : bilinear(patches.uvs, corner, u, v));
-    }
-  }
-  for (uint32_t row = 0; row < steps; ++row) {
-    for (uint32_t column = 0; column < steps; ++column) {
-      const uint32_t a = first + row * (steps + 1) + column, b = a + 1, c = b + steps + 1, d = c - 1;
-      for (const uint32_t index : {a, b, c, a, c, d}) mesh.indices.push_back(index);
-    }
-  }
+  return ReadMesh{static_cast<MeshId>(reader.scene.meshes.size() - 1), faces};
 }
 
 // validate_mesh for patches: it knows triangles only.
@@ -139,7 +96,7 @@ std::optional<ReadMesh> read_triangle_mesh(Reader& reader, Parameters& parameter
   mesh.name = place_name(reader, parameters.source());
   parameters.array("S", ParameterType::vector3, 3);  // tangents: only anisotropic and hair-like materials would notice
   if (!read_vertices(parameters, mesh, 3)) return std::nullopt;
-  return add_mesh(reader, parameters, std::move(mesh), 1);
+  return add_mesh(reader, parameters, std::move(mesh));
 }
 
 // pbrt's normals point to the side from which the control triangles run clockwise, and so does the shape's outside.
@@ -158,7 +115,7 @@ std::optional<ReadMesh> read_loop_mesh(Reader& reader, Parameters& parameters) {
     return std::nullopt;
   for (glm::vec3& normal : mesh.normals) normal = -normal;
   mesh.name = place_name(reader, parameters.source());
-  return add_mesh(reader, parameters, std::move(mesh), 1);
+  return add_mesh(reader, parameters, std::move(mesh));
 }
 
 std::optional<ReadMesh> read_bilinear_mesh(Reader& reader, Parameters& parameters) {
@@ -166,17 +123,14 @@ std::optional<ReadMesh> read_bilinear_mesh(Reader& reader, Parameters& parameter
   mesh.name = place_name(reader, parameters.source());
   parameters.string("emissionfilename", "");  // where pbrt looks for light: it changes its noise only
   if (!read_vertices(parameters, patches, 4) || !validate_patches(parameters, patches)) return std::nullopt;
-  bool all_flat = true;
-  for (size_t i = 0; i < patches.indices.size(); i += 4)
-    all_flat = all_flat && is_flat_and_convex(patches, &patches.indices[i]);
-  if (!all_flat) {
-    reader.messages.note_once(
-        "curved patch", parameters.source(),
-        fmt::format("Shape \"bilinearmesh\": curved patches are rendered as {0} x {0} flat pieces", patch_steps));
+  const PatchCut cut = cut_patches(patches, mesh);
+  if (cut.tolerance > 0) {
+    reader.messages.note_once("curved patch", parameters.source(),
+                              fmt::format("Shape \"bilinearmesh\": curved patches are cut into up to {0} x {0} pieces, "
+                                          "which are off by {1} of a patch's size at most; normals are the patch's",
+                                          cut.most_steps, cut.tolerance));
   }
-  const uint32_t steps = all_flat ? 1 : patch_steps;
-  for (size_t i = 0; i < patches.indices.size(); i += 4) add_patch(patches, &patches.indices[i], steps, mesh);
-  return add_mesh(reader, parameters, std::move(mesh), size_t{2} * steps * steps);
+  return add_mesh(reader, parameters, std::move(mesh), patches.indices.size() / 4);
 }
 
 std::optional<ReadMesh> read_ply_mesh(Reader& reader, Parameters& parameters) {
@@ -189,12 +143,12 @@ std::optional<ReadMesh> read_ply_mesh(Reader& reader, Parameters& parameters) {
   }
   const std::string path = reader.resolve(name);
   const auto known = reader.files_of_meshes.find(path);
-  if (known != reader.files_of_meshes.end()) return ReadMesh{known->second, 1};
+  if (known != reader.files_of_meshes.end()) return ReadMesh{known->second};
   const auto id = static_cast<MeshId>(reader.scene.meshes.size());
   reader.scene.meshes.emplace_back();
   reader.pending_files.push_back({path, parameters.messages().at(parameters.source()), id});
   reader.files_of_meshes.emplace(path, id);
-  return ReadMesh{id, 1};
+  return ReadMesh{id};
 }
 
 }  // namespace metamer::pbrt

@@ -8,7 +8,7 @@ namespace metamer::pbrt {
 
 struct ReadMesh {
   MeshId id = no_index;
-  size_t triangles_per_face = 1;  // of what pbrt takes as one shape: a triangle, or a bilinear patch
+  size_t faces = 0;  // bilinear patches, of which pbrt makes a shape each; 0: that is the triangles
 };
 
 // Nothing after reporting why.

@@ -78,7 +78,7 @@ Shape read_disk(Parameters& parameters) {
 }
 
 // In world space, as pbrt keeps its triangles.
-double mean_face_area(const Mesh& mesh, const glm::dmat4& transform, size_t triangles_per_face) {
+double mean_face_area(const Mesh& mesh, const glm::dmat4& transform, size_t given_faces) {
   double sum = 0;
   for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     glm::dvec3 p[3];
@@ -86,7 +86,7 @@ double mean_face_area(const Mesh& mesh, const glm::dmat4& transform, size_t tria
       p[k] = glm::dvec3(transform * glm::dvec4(glm::dvec3(mesh.positions[mesh.indices[i + k]]), 1.0));
     sum += 0.5 * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
   }
-  const double faces = static_cast<double>(mesh.indices.size() / 3) / static_cast<double>(triangles_per_face);
+  const double faces = static_cast<double>(given_faces > 0 ? given_faces : mesh.indices.size() / 3);
   return faces > 0 ? sum / faces : 0;
 }
 
@@ -105,7 +105,7 @@ std::optional<Shape> read_mesh_shape(Reader& reader, std::string_view kind, Para
   Shape shape{{.kind = ShapeKind::mesh, .mesh = read->id}, 0};
   if (reader.state.area_light.power > 0) {
     read_pending(reader);
-    shape.area = mean_face_area(reader.scene.meshes[read->id], reader.state.transform, read->triangles_per_face);
+    shape.area = mean_face_area(reader.scene.meshes[read->id], reader.state.transform, read->faces);
   }
   return shape;
 }

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "scenes/late_mistakes.h"
 #include "scenes/program/failure.h"
 #include "scenes/read_scene.h"
 #include "systems/freeze.h"
@@ -74,6 +75,7 @@ LoadedScene load_scene(const std::string& path, const SceneOverrides& overrides,
   LoadedScene loaded;
   loaded.scene.texture_memory = overrides.texture_memory.value_or(loaded.scene.texture_memory);
   const bool is_good = read_scene(path, loaded.scene, loaded.diagnostics);
+  if (!is_good) add_late_mistakes(loaded.scene, loaded.diagnostics);
   if (remarks.strict) loaded.diagnostics.apply_strict();
   if (!is_good || loaded.diagnostics.has_errors()) {
     print_diagnostics(loaded.diagnostics, path);

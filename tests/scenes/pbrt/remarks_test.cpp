@@ -51,6 +51,10 @@ TEST(PbrtWorldRemarks, MotionThatHasNoPlaceThereIsSaid) {
   EXPECT_THAT(read_world("ActiveTransform EndTime Translate 1 0 0 ActiveTransform All\nLightSource \"point\"").messages,
               testing::ElementsAre("scene:3: warning: lights that move are not supported; they stand as at the start "
                                    "of their motion, as in pbrt"));
+  EXPECT_THAT(
+      read_world("Shape \"plymesh\" \"string filename\" \"none.ply\"\n\"texture displacement\" \"waves\"").messages,
+      testing::Contains("scene:3: warning: Shape \"plymesh\": 'displacement' is not supported yet; the surface "
+                        "stays as it is"));
 }
 
 }  // namespace

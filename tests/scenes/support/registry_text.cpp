@@ -57,6 +57,33 @@ std::string textures_text(const Scene& scene, const Material& m) {
   return text;
 }
 
+std::string medium_text(const Scene& scene, Entity entity) {
+  if (entity.is_null()) return "nothing";
+  const Medium m = scene.registry.get<Medium>(entity);
+  std::string text = fmt::format("medium sigma_a {} sigma_s {}", spectrum(scene, m.sigma_a, double{m.scale}),
+                                 spectrum(scene, m.sigma_s, double{m.scale}));
+  if (m.g != 0) text += fmt::format(" g {:.4g}", m.g);
+  if (scene.spectra.max_value(m.emission) > 0 && m.emission_scale > 0)
+    text += fmt::format(" glow {:.4g}", scene.spectra.luminance(m.emission) * double{m.emission_scale});
+  if (!scene.registry.has<MediumGrid>(entity)) return text;
+  const MediumGrid g = scene.registry.get<MediumGrid>(entity);
+  const std::pair<GridId, const char*> grids[] = {{g.density, "density"},
+                                                  {g.sigma_a, "sigma_a"},
+                                                  {g.sigma_s, "sigma_s"},
+                                                  {g.emission, "emission"},
+                                                  {g.temperature, "temperature"}};
+  for (const auto& [id, name] : grids)
+    if (id != no_index) text += fmt::format(" grid of {} mean {:.4g}", name, grid_mean(scene.grids[id]).x);
+  return text + fmt::format(" from {:.4g} {:.4g} {:.4g} to {:.4g} {:.4g} {:.4g}", g.lower.x, g.lower.y, g.lower.z,
+                            g.upper.x, g.upper.y, g.upper.z);
+}
+
+std::string sides_text(const Scene& scene, Entity entity) {
+  if (!scene.registry.has<MediumSlot>(entity)) return {};
+  const MediumSlot slot = scene.registry.get<MediumSlot>(entity);
+  return fmt::format(" between {} and {}", medium_text(scene, slot.inside), medium_text(scene, slot.outside));
+}
+
 std::string material_text(const Scene& scene, const Material& m) {
   std::string text;
   switch (m.kind) {
@@ -98,12 +125,19 @@ std::string material_text(const Scene& scene, const Material& m) {
 }
 
 std::string light_text(const Scene& scene, const Light& light) {
-  constexpr std::string_view names[] = {"area", "point", "spot", "directional", "environment"};
+  constexpr std::string_view names[] = {"area",        "point",       "spot",      "directional",
+                                        "environment", "goniometric", "projection"};
   std::string text = fmt::format("{} light of {:.4g}", names[static_cast<size_t>(light.kind)],
                                  scene.spectra.luminance(light.spectrum) * static_cast<double>(light.scale));
   if (light.two_sided != 0) text += " two-sided";
   if (light.kind == LightKind::spot)
     text += fmt::format(" cone {:.4g} falloff {:.4g}", light.cone_deg, light.falloff_deg);
+  if (light.kind == LightKind::projection) text += fmt::format(" fov {:.4g}", light.fov_deg);
+  if (light.is_power != 0) text += " in all";
+  if (light.has_portal != 0)
+    text += fmt::format(" through {:.4g} {:.4g} {:.4g} and along {:.4g} {:.4g} {:.4g} and {:.4g} {:.4g} {:.4g}",
+                        light.portal_corner.x, light.portal_corner.y, light.portal_corner.z, light.portal_x.x,
+                        light.portal_x.y, light.portal_x.z, light.portal_y.x, light.portal_y.y, light.portal_y.z);
   if (light.image != no_index)
     text += fmt::format(" image {} x {}", scene.images[light.image].width, scene.images[light.image].height);
   return text;
@@ -120,15 +154,25 @@ std::string shape_text(const Scene& scene, Entity entity) {
     const Mesh& mesh = scene.meshes[g.mesh];
     text = fmt::format("mesh {} vertices {} triangles{}{}", mesh.positions.size(), mesh.indices.size() / 3,
                        mesh.normals.empty() ? "" : " normals", mesh.uvs.empty() ? "" : " uvs");
+  } else if (g.kind == ShapeKind::cylinder) {
+    text = fmt::format("cylinder radius {:.5g}", g.radius);
   } else {
-    text = fmt::format("shape of kind {}", static_cast<uint32_t>(g.kind));
+    constexpr std::string_view names[] = {"flat", "ribbon", "round"};
+    const Curves& curves = scene.curves[g.curves];
+    text = fmt::format("{} curves of {} segments from {} to {}",
+                       names[static_cast<size_t>(g.kind) - static_cast<size_t>(ShapeKind::flat_curves)],
+                       curves.segments.size(), numbers(curves.points[0]),
+                       numbers(curves.points[curves.points.size() - 1]));
   }
+  if (std::isfinite(g.z_min) || std::isfinite(g.z_max)) text += fmt::format(" z {:.4g} to {:.4g}", g.z_min, g.z_max);
+  if (g.phi_max_deg != 360) text += fmt::format(" phi {:.4g}", g.phi_max_deg);
   if (g.flip_normal != 0) text += " flipped";
   if (g.alpha_texture != no_index) text += ", alpha: " + texture_text(scene, g.alpha_texture);
   text += place(scene, entity);
   const Entity material = scene.registry.get<MaterialSlot>(entity).material;
   if (scene.registry.has<MaterialSlot>(entity))
     text += " of " + material_text(scene, scene.registry.get<Material>(material));
+  text += sides_text(scene, entity);
   if (scene.registry.has<Light>(entity)) text += ", " + light_text(scene, scene.registry.get<Light>(entity));
   return text;
 }
@@ -143,7 +187,7 @@ std::string camera_text(const Scene& scene, Entity entity) {
   if (c.focal_distance != 1e6f && c.kind != CameraKind::spherical)
     text += fmt::format(" focus {:.5g}", c.focal_distance);
   if (c.screen_window != glm::vec4(0)) text += " window " + numbers(c.screen_window);
-  return text + place(scene, entity);
+  return text + sides_text(scene, entity) + place(scene, entity);
 }
 
 }  // namespace
