@@ -375,7 +375,9 @@ TEST(NativeMistakes, SurvivesBeingCutAtEveryByte) {
 }
 
 TEST(NativeMistakes, SurvivesEveryByteBeingReplaced) {
-  const std::string text = read_text(folder + "every_key.json");
+  std::string text = read_text(folder + "every_key.json");
+  // Volumes that are not there: reading them tens of thousands of times would take minutes.
+  for (size_t at; (at = text.find("puff.vdb")) != std::string::npos;) text.replace(at, 8, "none.vdb");
   for (size_t i = 0; i < text.size(); ++i) {
     for (const char garbage : {'\0', '\xff', '"', '[', '}', '9'}) {
       std::string damaged = text;
