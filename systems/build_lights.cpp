@@ -136,6 +136,24 @@ std::vector<double> choice_weights(const World& world, std::span<const double> p
   return weights;
 }
 
+// See World::positional_choice.
+void choose_positional(World& world) {
+  if (world.settings.integrator != Integrator::path || !world.settings.shadows) return;
+  const VolumeColumns& volumes = world.volumes;
+  bool is_even = false;
+  for (size_t row = 0; row < volumes.scatters.size(); ++row)
+    is_even = is_even || (volumes.scatters[row] != 0 && volumes.grid[row] == no_index);
+  if (!is_even) return;
+  std::vector<double> weights(world.lights.size());
+  double total = 0;
+  for (size_t row = 0; row < weights.size(); ++row) {
+    const auto shape = static_cast<LightShape>(world.lights[row].shape);
+    if (shape < LightShape::point || shape > LightShape::projection) continue;
+    total += weights[row] = double{world.lights[row].choice_probability};
+  }
+  if (total > 0) world.positional_choice = make_distribution_1d(weights);
+}
+
 // Path tracing draws one light of all. The other integrators sum the abstract ones and draw one of the rest.
 void choose_lights(std::vector<double>& power, World& world) {
   if (world.settings.integrator != Integrator::path)
@@ -151,6 +169,7 @@ void choose_lights(std::vector<double>& power, World& world) {
   world.light_choice = make_distribution_1d(choice_weights(world, power, total));
   for (uint32_t row = 0; row < power.size(); ++row)
     world.lights[row].choice_probability = discrete_probability(world.light_choice, row);
+  choose_positional(world);
 }
 
 }  // namespace

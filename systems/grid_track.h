@@ -21,4 +21,9 @@ struct VolumeRays {
 void track_grid(const World& world, uint32_t volume, const VolumeRays& rays, const uint32_t* order, uint32_t count,
                 GridWork& work);
 
+// Light of points that the homogeneous volume around each of rays.order scatters into its ray, before what it meets:
+// one place for each ray, by the angles that the light sees; what free paths find of the same counts the rest. As
+// shadow rays. `dimension` is a 2D one of its own.
+void scattered_light(const World& world, const VolumeRays& rays, uint32_t dimension, ShadowStream& shadow);
+
 }  // namespace metamer

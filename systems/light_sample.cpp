@@ -5,21 +5,13 @@
 #include "engine/sampling/points-inl.h"
 #include "engine/sampling/warps-inl.h"
 #include "systems/dimensions.h"
-#include "systems/lights-inl.h"
 #include "systems/media-inl.h"
+#include "systems/positional_lights-inl.h"
 #include "systems/systems.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace metamer::HWY_NAMESPACE {
 namespace {
-
-// A direction towards a light. pdf is per solid angle without the choice of the light; for point, spot and directional
-// lights it is 0 and `weight` the irradiance per radiance unit they stand for (1 / d^2, 1).
-struct LightSample {
-  Vec3 direction;
-  VF distance, pdf, weight;
-  VF image_u, image_v;  // only of lights with an image
-};
 
 // Uniform on the part of the unit sphere that the light's is the image of.
 HWY_INLINE Vec3 sample_unit_sphere_part(const LightFields& light, VF u, VF v) {
@@ -118,30 +110,6 @@ HWY_INLINE void sample_sphere_cone(const World& world, const LightFields& light,
   if (world.has_shape_images)
     store_sphere_uv(light, outside, ellipsoid_unit_point(light, mul_add(direction, distance, from)), &sample.image_u,
                     &sample.image_v);
-}
-
-HWY_INLINE void sample_point_light(const LightFields& light, const Vec3& from, LightSample& sample) {
-  const Vec3 to_light = light.vector(offsetof(LightRow, p)) - from;
-  const VF distance2 = hn::Max(dot(to_light, to_light), splat(1e-30f));
-  sample.distance = hn::Sqrt(distance2);
-  sample.direction = to_light * hn::Div(splat(1.0f), sample.distance);
-  sample.pdf = hn::Zero(FloatTag());
-  sample.weight = hn::Div(splat(1.0f), distance2);
-}
-
-HWY_INLINE void sample_spot(const LightFields& light, const Vec3& from, LightSample& sample) {
-  sample_point_light(light, from, sample);
-  sample.weight = hn::Mul(sample.weight, spot_falloff(light, -sample.direction));
-}
-
-HWY_INLINE void sample_image_light(const LightFields& light, VU shape, const Vec3& from, LightSample& sample) {
-  sample_point_light(light, from, sample);
-  const LightImagePoint sphere = goniometric_point(light, -sample.direction);
-  const LightImagePoint window = projection_point(light, -sample.direction);
-  const MF throws = is_shape(shape, LightShape::projection);
-  sample.image_u = hn::IfThenElse(throws, window.u, sphere.u);
-  sample.image_v = hn::IfThenElse(throws, window.v, sphere.v);
-  sample.weight = hn::IfThenZeroElse(hn::AndNot(window.inside, throws), sample.weight);
 }
 
 // Uniform in the disc's solid angle.
@@ -261,6 +229,7 @@ void light_sample_lanes(const World& world, uint32_t depth, ShadeKind kind, Shad
   const LightFields light(world, sample_discrete(world.light_choice, choice).index);
   const LightSample sample = sample_light(world, light, load(shade.position, i), u, v);
   store_light_sample(world, light, sample, light.number(offsetof(LightRow, choice_probability)), kind, shade, i);
+  if (kind == ShadeKind::phase) store(hn::BitCast(UintTag(), light.light), shade.light, i);
 }
 
 void light_sample_kernel(const World& world, uint32_t depth, ShadeStream& shade) {

@@ -48,9 +48,7 @@ void find_surfaces(const World& world, uint32_t depth, Batch& batch, StageClock&
   }
   clock.charge(SystemId::intersect);
   ShadeStream& shade = batch.shade;
-  if (world.has_volumes)
-    counters.lost_rays += volumes(world, depth, paths, batch.hits, batch.order, shade, batch.slots, counters.grids,
-                                  &counters.embree_seconds);
+  if (world.has_volumes) volumes(world, depth, batch, counters);
   clock.charge(SystemId::volumes);
   sort_hits(world, depth, paths, batch.hits, batch.order, shade.groups);
   shade.size = shade.groups.back().padded_end();

@@ -69,12 +69,12 @@ void intersect_onward(const World& world, const PathStream& paths, const uint32_
 
 // Where the world has volumes: what happens to rays before they meet a surface. They are absorbed and gather what
 // glows; for `path` they are scattered, which turns the hit into a vertex of ShadeKind::phase, else what is scattered
-// is lost. Interfaces are passed. Writes throughput, volume and share of the paths, and their hits. `order` and `shade`
-// are scratch. Returns the number of rays that met more than most_interfaces and end.
+// is lost. Interfaces are passed. Reads and writes the batch's paths (throughput, volume and share) and hits, adds to
+// its slots; its order, shade, shadow and crossings are scratch. Counts rays that met more than most_interfaces and
+// end.
 inline constexpr uint32_t most_interfaces = 1024;
 inline constexpr float light_is_counted = -1;  // HitStream::depth_left: `emission` has seen the shape that was hit
-uint32_t volumes(const World& world, uint32_t depth, PathStream& paths, HitStream& hits, uint32_t* order,
-                 ShadeStream& shade, Slots& slots, GridWork& work, double* embree_seconds);
+void volumes(const World& world, uint32_t depth, Batch& batch, Counters& counters);
 
 // Chooses the material of hits on mixed ones and sorts by kind: order[lane] is the path, dead_lane in the padding
 // between groups. Writes the hits' material.

@@ -228,13 +228,15 @@ void stretch(const World& world, const VolumeRays& rays, GridWork& work) {
   }
 }
 
-// The listed rays up to what they meet, on through all interfaces. `mask`: what they see. Returns how many are given
-// up.
+// The listed rays up to what they meet, on through all interfaces. `mask`: what they see; before_stretch(n) is called
+// before the n-th stretch. Returns how many are given up.
+template <class BeforeStretch>
 uint32_t follow(const World& world, uint32_t mask, VolumeRays& rays, ShadeStream& shade, GridWork& work,
-                double* embree_seconds) {
+                double* embree_seconds, const BeforeStretch& before_stretch) {
   const uint32_t key = rays.key;
   const auto is_at_interface = [&](uint32_t i) { return is_kind(world, rays.hits.object[i], ShadeKind::interface); };
   for (uint32_t passed = 0;; ++passed) {
+    before_stretch(passed);
     const DimmedLights lights(world, rays);
     lights.add(world, rays, shade);
     rays.key = hash_combine(key, passed);
@@ -255,15 +257,35 @@ uint32_t follow(const World& world, uint32_t mask, VolumeRays& rays, ShadeStream
   return rays.count;
 }
 
+// Light of points that the listed rays get on their n-th stretch, found by its angles.
+void add_scattered_light(const World& world, uint32_t depth, uint32_t n, const VolumeRays& rays, Batch& batch,
+                         Counters& counters) {
+  ShadowStream& shadow = batch.shadow;
+  shadow.size = 0;
+  scattered_light(world, rays, bounce_dimension(depth, free_path_dimension) + (n + 1) * 0x10000, shadow);
+  if (shadow.size == 0) return;
+  if (!batch.crossings) batch.crossings = std::make_unique<Batch>();
+  occlude(world, shadow, &counters.embree_seconds);
+  constexpr uint32_t first_key = 0x80000000u;  // no number of a light
+  counters.lost_rays +=
+      transmit(world, depth, first_key + n, shadow, *batch.crossings, counters.grids, &counters.embree_seconds);
+  add_light(shadow, batch.slots);
+  counters.shadow_rays += shadow.size;
+}
+
 }  // namespace
 
-uint32_t volumes(const World& world, uint32_t depth, PathStream& paths, HitStream& hits, uint32_t* order,
-                 ShadeStream& shade, Slots& slots, GridWork& work, double* embree_seconds) {
-  VolumeRays rays{paths, hits, &slots, world.settings.integrator == Integrator::path, order};
+void volumes(const World& world, uint32_t depth, Batch& batch, Counters& counters) {
+  const RenderSettings& settings = world.settings;
+  VolumeRays rays{batch.paths, batch.hits, &batch.slots, settings.integrator == Integrator::path, batch.order};
   rays.key = hash_combine(depth, 0);
-  HWY_DYNAMIC_DISPATCH(start_kernel)(depth, paths, hits);
-  list_all(paths.size, rays);
-  return follow(world, depth == 0 ? visible_to_camera : visible_to_bounces, rays, shade, work, embree_seconds);
+  HWY_DYNAMIC_DISPATCH(start_kernel)(depth, batch.paths, batch.hits);
+  list_all(batch.paths.size, rays);
+  const bool finds_points = world.positional_choice.size() > 0 && depth < settings.max_depth;
+  counters.lost_rays += follow(world, depth == 0 ? visible_to_camera : visible_to_bounces, rays, batch.shade,
+                               counters.grids, &counters.embree_seconds, [&](uint32_t n) {
+                                 if (finds_points) add_scattered_light(world, depth, n, rays, batch, counters);
+                               });
 }
 
 uint32_t transmit(const World& world, uint32_t depth, uint32_t light, ShadowStream& shadow, Batch& crossings,
@@ -295,7 +317,8 @@ uint32_t transmit(const World& world, uint32_t depth, uint32_t light, ShadowStre
   keep(rays, [&](uint32_t i) { return shadow.slot[i] != dead_lane; });
   if (world.has_interfaces)
     intersect_onward(world, paths, rays.order, rays.count, visible_to_crossings, hits, embree_seconds);
-  const uint32_t lost = follow(world, visible_to_crossings, rays, crossings.shade, work, embree_seconds);
+  const uint32_t lost =
+      follow(world, visible_to_crossings, rays, crossings.shade, work, embree_seconds, [](uint32_t) {});
   copy(paths.throughput, shadow.contribution);
   return lost;
 }

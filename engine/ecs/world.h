@@ -307,6 +307,9 @@ struct World {
   Column<uint32_t> light_finding;       // LightFinding by row of lights
   std::vector<uint32_t> distant_disks;  // the rows of lights of that shape: rays that leave the scene run into them
   Distribution1D light_choice;          // over the rows of lights that are sampled; empty where there is none
+  // The same of points that shine, spots and the like, where `path` finds them also by their angles from a ray through
+  // a homogeneous volume; empty where there are none, or no such volume.
+  Distribution1D positional_choice;
   Column<uint32_t> summed_lights;  // rows of abstract lights that are summed one by one (local, recursive), not sampled
   std::vector<Environment> environments;  // rays that leave the scene run into all of them
   TextureSet textures;

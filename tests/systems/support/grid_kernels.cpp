@@ -5,6 +5,7 @@
 #include "hwy/foreach_target.h"
 //
 #include "systems/blackbody-inl.h"
+#include "systems/equiangular-inl.h"
 #include "systems/grid_lookup-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -43,6 +44,12 @@ std::array<double, 3> stochastic(const GridColumns& grids, const GridRow& row, c
   });
 }
 double shape(float kelvin, float lambda_nm) { return hn::GetLane(blackbody_shape(splat(kelvin), splat(lambda_nm))); }
+EquiangularPoint angles(float nearest, float distance, float u) {
+  const VF zero = splat(0.0f);
+  const Equiangular e = equiangular({splat(nearest), splat(distance), zero}, {splat(1.0f), zero, zero});
+  const VF t = sample_equiangular(e, splat(u));
+  return {double{hn::GetLane(t)}, double{hn::GetLane(equiangular_pdf(e, t))}};
+}
 double peak(float kelvin) { return hn::GetLane(blackbody_peak(splat(kelvin))); }
 
 }  // namespace
@@ -56,6 +63,7 @@ HWY_EXPORT(trilinear);
 HWY_EXPORT(stochastic);
 HWY_EXPORT(shape);
 HWY_EXPORT(peak);
+HWY_EXPORT(angles);
 
 std::array<double, 3> kernel_trilinear(const GridColumns& grids, const GridRow& row, const glm::vec3& index) {
   return HWY_DYNAMIC_DISPATCH(trilinear)(grids, row, index);
@@ -66,6 +74,9 @@ std::array<double, 3> kernel_stochastic(const GridColumns& grids, const GridRow&
 }
 double kernel_blackbody_shape(float kelvin, float lambda_nm) { return HWY_DYNAMIC_DISPATCH(shape)(kelvin, lambda_nm); }
 double kernel_blackbody_peak(float kelvin) { return HWY_DYNAMIC_DISPATCH(peak)(kelvin); }
+EquiangularPoint kernel_equiangular(float nearest, float distance, float u) {
+  return HWY_DYNAMIC_DISPATCH(angles)(nearest, distance, u);
+}
 
 }  // namespace metamer
 #endif
