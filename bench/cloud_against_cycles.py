@@ -4,7 +4,7 @@
 usage: bench/cloud_against_cycles.py CLOUD.vdb [--metamer build/metamer] [--blender blender] [--size 320x240] [--spp 64]
                                      [--threads N] [--max-depth 64] [--scale 40] [--folder .]
 
-CLOUD.vdb holds a grid "density" with z up, as build/volumes/cloud.vdb, which `build/make_volumes FOLDER` writes. Both
+CLOUD.vdb holds a grid "density" with z up, as scenes/library/cloud.vdb. Both
 renderers get the same file, camera, sun (half a degree wide), even sky, scale of density, albedo of 1, g of 0.5, size,
 samples, threads and most scatterings. Cycles marches through volumes in steps of its own choice and renders RGB; metamer follows
 free paths on four wavelengths. Times are those of rendering alone, without start and reading; Blender is a Debian
