@@ -161,7 +161,7 @@ TEST(TextureLevels, ReflectancesAreRightOnAverage) {
 }
 
 // A board of 256 x 256 fields of which a pixel of the far end sees dozens: with levels every pixel is what very many
-// samples of the file itself find, to 2 % of the board's contrast (a lookup's width against a pixel filter of 1), and
+// samples of the file itself find, to 0.02 in reflectance (a lookup's width against a pixel filter of 1), and
 // less noisy.
 TEST(TextureLevels, AFarBoardIsWhatManySamplesOfTheImageFind) {
   constexpr uint32_t pixels = 16;
