@@ -6,6 +6,7 @@
 #include <glm/ext/matrix_transform.hpp>
 
 #include "scenes/native/transforms.h"
+#include "scenes/volumes/bricks.h"
 #include "scenes/volumes/medium_box.h"
 #include "scenes/volumes/noise_grid.h"
 
@@ -40,6 +41,7 @@ bool read_box(const JsonReader& reader, const Json::Value& value, glm::dvec3& lo
 GridId MediumGrids::add_grid(Grid&& grid) {
   const double metres = context_.metres_per_unit;
   if (metres != 1) grid.index_to_local = glm::scale(glm::dmat4(1.0), glm::dvec3(metres)) * grid.index_to_local;
+  settle_transform(grid.index_to_local);
   context_.scene.grids.push_back(std::move(grid));
   return static_cast<GridId>(context_.scene.grids.size() - 1);
 }

@@ -9,6 +9,7 @@
 #include "engine/spectrum/observers.h"
 #include "scenes/pbrt/matrix.h"
 #include "scenes/pbrt/reader.h"
+#include "scenes/volumes/bricks.h"
 
 namespace metamer::pbrt {
 namespace {
@@ -139,6 +140,7 @@ GridId read_grid(Reader& reader, Parameters& parameters, std::string_view name, 
   grid.channels = channels;
   grid.color_space = parameter->color_space;
   grid.index_to_local = shape.index_to_local();
+  settle_transform(grid.index_to_local);
   set_dense_values(grid, shape.cells, std::vector<float>(numbers.begin(), numbers.end()));
   reader.scene.grids.push_back(std::move(grid));
   return static_cast<GridId>(reader.scene.grids.size() - 1);

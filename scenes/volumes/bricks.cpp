@@ -121,6 +121,15 @@ void finish_bricks(BrickSink& sink) {
   grid.values = std::move(values);
 }
 
+void settle_transform(glm::dmat4& m) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (i != j && m[i][j] != 0) return;
+  constexpr int rounds = 4;  // the second settles it
+  for (int round = 0; round < rounds; ++round)
+    for (int i = 0; i < 3; ++i) m[i][i] = (m[i][i] + m[3][i]) - m[3][i];
+}
+
 void check_values(const Grid& grid, bool may_be_negative) {
   const auto is_wrong = [&](float x) { return !std::isfinite(x) || (x < 0 && !may_be_negative); };
   const auto fail = [](float x, const std::string& where, size_t count) {

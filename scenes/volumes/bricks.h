@@ -40,6 +40,10 @@ void add_active(BrickSink& sink, glm::ivec3 lower, glm::ivec3 upper);
 // to the background. Throws where two bricks have the same place.
 void finish_bricks(BrickSink& sink);
 
+// OpenVDB keeps a matrix that only scales and moves as the place of voxel (1, 1, 1) less that of (0, 0, 0), which
+// rounds the scale: so rounded, it is kept as it is, and a grid that was written is where it was.
+void settle_transform(glm::dmat4& index_to_local);
+
 // Throws where a value is not finite, or negative unless that is allowed: the first of them and how many there are.
 void check_values(const Grid& grid, bool may_be_negative);
 

@@ -49,6 +49,7 @@ void read_one(Job& job) {
   try {
     read_by_kind(request);
     if (!request.found) return;
+    settle_transform(request.grid.index_to_local);
     check_transform(request.grid.index_to_local);
     check_values(request.grid, request.may_be_negative);
   } catch (const GridError& e) {
