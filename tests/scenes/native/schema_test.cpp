@@ -120,7 +120,7 @@ TEST(NativePage, ShowsSnippetsThatCanBeRead) {
     EXPECT_TRUE(read_native("page.json", copy_bytes(text), scene, diagnostics))
         << format_diagnostics(diagnostics) << text;
   }
-  EXPECT_EQ(found, 11);
+  EXPECT_EQ(found, 12);
 }
 
 }  // namespace
