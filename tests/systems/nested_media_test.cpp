@@ -7,8 +7,6 @@
 namespace metamer {
 namespace {
 
-constexpr Integrator all_levels[] = {Integrator::recursive, Integrator::path};
-
 Material followed(SceneBuilder& b, double eta, uint32_t priority) {
   Material material = b.dielectric(b.constant(eta));
   material.priority = priority;
@@ -20,11 +18,13 @@ Geometry hollow(float radius) {
   return geometry;
 }
 
-// A glass of radius 1 with a hollow of 0.5, and tea grown into the glass, to 0.6, on the way along z.
+// Trees of rays: a path that is drawn to reflect with a chance of 1e-8 would be an exception to every statement about
+// all paths. A glass of radius 1 with a hollow of 0.5, and tea grown into the glass, to 0.6, on the way along z.
 struct GlassOfTea {
   SceneBuilder b;
   Entity tea;
   explicit GlassOfTea(double sigma_a, double eta = 1, bool tea_first = false) : b(16, 16, 16, 12) {
+    b.scene.settings.integrator = Integrator::recursive;
     tea = b.medium(b.constant(sigma_a), zero_spectrum);
     if (tea_first) add_tea(eta);
     b.add(sphere(1), followed(b, eta, 2));
@@ -40,14 +40,15 @@ struct GlassOfTea {
 };
 
 TEST(NestedMedia, BeginAtTheInnerWallOfTheGlass) {
-  for (const Integrator integrator : all_levels)
-    for (const bool tea_first : {false, true}) {
-      GlassOfTea scene(1.3, 1, tea_first);
-      scene.b.scene.settings.integrator = integrator;
-      scene.b.light(LightKind::environment, unit_spectrum, 1);
-      scene.look_from(5);
-      scene.expect_depth(1.3);
-    }
+  for (const bool tea_first : {false, true}) {
+    GlassOfTea scene(1.3, 1, tea_first);
+    scene.b.light(LightKind::environment, unit_spectrum, 1);
+    scene.look_from(5);
+    scene.expect_depth(1.3);
+    scene.b.scene.settings.integrator = Integrator::path;
+    expect_mean(
+        trace_radiances(*scene.b.freeze()), [](double) { return std::exp(-1.3); }, 0.02);
+  }
 }
 
 // A bare lump of ice in it is no tea; a lump with air bubbles' medium of its own has that.
@@ -82,6 +83,7 @@ TEST(NestedMedia, TheCameraIsInTheMediumOfItsSolid) {
 // One material shared by two balls with different media.
 TEST(NestedMedia, BelongToSurfacesNotToMaterials) {
   SceneBuilder b(16, 16, 16, 12);
+  b.scene.settings.integrator = Integrator::recursive;
   b.light(LightKind::environment, unit_spectrum, 1);
   b.look_at({0, 0, 5}, {0, 0, 0}, orthographic(1e-3f), {0, 1, 0});
   const Entity material = b.place();
@@ -104,6 +106,7 @@ TEST(NestedMedia, DimLightSamples) {
   for (const bool is_clear : {false, true}) {
     GlassOfTea scene(is_clear ? 0.0 : 1.3);
     SceneBuilder& b = scene.b;
+    b.scene.settings.integrator = Integrator::path;
     b.add(rectangle(0.1f, 0.1f), b.diffuse(0.5));
     b.light(LightKind::point, unit_spectrum, 1, moved(0, 0, 0.4));
     scene.look_from(0.3);

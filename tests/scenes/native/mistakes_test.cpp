@@ -353,16 +353,22 @@ Json::Value parse(const std::string& text) {
 }
 
 TEST(NativeMistakes, EveryKeyIsReadAndAWrongTypeIsReportedOnItsLine) {
-  const std::string text = read_text(folder + "every_key.json");
   std::set<std::string> seen;
-  each_value(parse(text), [&](const Json::Value& value, const std::string& key) {
-    if (key.empty()) return;
-    seen.insert(key);
-    const auto begin = static_cast<size_t>(value.getOffsetStart()), end = static_cast<size_t>(value.getOffsetLimit());
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(begin), '\n');
-    const std::string wrong = text.substr(0, begin) + "[[null]]" + text.substr(end);
-    EXPECT_THAT(messages_of(wrong), HasSubstr("scene.json:" + std::to_string(line) + ": error: ")) << key;
-  });
+  const auto break_each = [&](const std::string& text) {
+    each_value(parse(text), [&](const Json::Value& value, const std::string& key) {
+      if (key.empty()) return;
+      seen.insert(key);
+      const auto begin = static_cast<size_t>(value.getOffsetStart()), end = static_cast<size_t>(value.getOffsetLimit());
+      const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(begin), '\n');
+      const std::string wrong = text.substr(0, begin) + "[[null]]" + text.substr(end);
+      EXPECT_THAT(messages_of(wrong), HasSubstr("scene.json:" + std::to_string(line) + ": error: ")) << key;
+    });
+  };
+  break_each(read_text(folder + "every_key.json"));
+  // A scene has one filter.
+  for (const char* filter : {"\"mitchell\", \"radius\": 2,\n\"b\": 0.2,\n\"c\": 0.4", "\"sinc\",\n\"tau\": 2"})
+    break_each(std::string("{\"metamer\": 1, \"entities\": [],\n\"settings\": {\n\"filter\": {\"type\": ") + filter +
+               "}}}");
   for (const ObjectSpec& spec : all_object_specs())
     for (const KeySpec& key : spec.keys) EXPECT_TRUE(seen.contains(std::string(key.name))) << key.name;
 }

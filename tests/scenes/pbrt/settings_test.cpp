@@ -120,8 +120,9 @@ TEST(PbrtSettings, TheFilmClampsAndBalances) {
   EXPECT_EQ(settings("Film \"rgb\" \"float whitebalance\" 3200").white_balance_kelvin, 2856.0f)
       << "pbrt: below daylight's 4000 K illuminant A";
   const ReadScene hot = read_settings("Camera \"perspective\"\nFilm \"rgb\"\n\"float whitebalance\" 30000");
-  EXPECT_THAT(hot.messages,
-              testing::ElementsAre("scene:3: error: 'whitebalance' expects at most 24986 kelvin, not 30000"));
+  EXPECT_THAT(
+      hot.messages,
+      testing::ElementsAre("scene:3: error: Film \"rgb\": 'whitebalance' expects at most 24986 kelvin, not 30000"));
 }
 
 TEST(PbrtSettings, WhatIsUsedInsteadIsSaid) {
