@@ -3,56 +3,10 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "engine/sampling/hash.h"
-#include "engine/spectrum/sources.h"
-#include "tests/systems/support/grid_scene.h"
+#include "tests/systems/support/lumpy_volumes.h"
 
 namespace metamer {
 namespace {
-
-constexpr double pi = std::numbers::pi;
-constexpr Integrator all_levels[] = {Integrator::local, Integrator::recursive, Integrator::path};
-constexpr uint32_t many_events = 400;
-constexpr int side = 20;  // voxels; not a multiple of a brick
-
-SpectrumId slope(SceneBuilder& b, double blue, double red) {
-  const std::vector<double> lambda_nm = {360, 830}, values = {blue, red};
-  return b.scene.spectra.add_table(lambda_nm, values, Extend::constant).id;
-}
-double slope_at(double nm, double blue, double red) { return blue + (red - blue) * (nm - 360) / 470; }
-
-SceneBuilder beam(uint32_t samples_per_pixel, uint32_t max_depth, Integrator integrator = Integrator::path) {
-  SceneBuilder b(16, 16, samples_per_pixel, max_depth);
-  b.scene.settings.integrator = integrator;
-  b.look_at({0.01, 0.02, 5}, {0.01, 0.02, 0}, orthographic(1e-3f), {0, 1, 0});
-  return b;
-}
-
-// Lumps from 0 to 1, different in every direction.
-double lumps(int i, int j, int k) {
-  const uint32_t hash = hash_combine(hash_combine(uint32_t(i / 2), uint32_t(j / 3)), uint32_t(k / 2));
-  const double x = double(hash % 1000) / 1000;
-  return x < 0.4 ? 0 : x;
-}
-GridId lumpy_grid(SceneBuilder& b) {
-  return add_grid(b, glm::ivec3(side), voxels_in_box(glm::ivec3(side), glm::dvec3(-1), glm::dvec3(1)), lumps);
-}
-glm::vec3 colours(int i, int j, int k) {
-  return {float(lumps(i, j, k)), float(0.3 * lumps(j, k, i)), float(2 * lumps(k, j, i + 1))};
-}
-MediumGrid unit_box() { return in_box(glm::vec3(-1), glm::vec3(1)); }
-
-// The integral of f(local z) over the beam's way through the box from 1 to -1, from the camera on: f(z, depth so far).
-template <class Density>
-double along_beam(const Density& density, double from, double to, int steps = 20000) {
-  double sum = 0;
-  const double h = (to - from) / steps;
-  for (int i = 0; i < steps; ++i) sum += density(from + (i + 0.5) * h) * h;
-  return sum;
-}
-double beam_depth(const Scene& scene, GridId grid) {
-  return along_beam([&](double z) { return value_at(scene.grids[grid], {0.01, 0.02, z}).x; }, -1, 1);
-}
 
 // Grey, so that four wavelengths are one number: a million paths through thin smoke tell 0.1 %.
 TEST(GridVolumes, FollowBeerAndLambertToAThousandth) {
@@ -160,17 +114,6 @@ TEST(GridVolumes, DimLightSamples) {
   }
 }
 
-enum class Variation { grey, chromatic, coloured };
-Entity white_smoke(SceneBuilder& b, Variation variation, float g) {
-  MediumGrid grid = unit_box();
-  grid.density = lumpy_grid(b);
-  if (variation == Variation::coloured)
-    grid.sigma_s =
-        add_grid(b, glm::ivec3(side), voxels_in_box(glm::ivec3(side), glm::dvec3(-1), glm::dvec3(1)), colours);
-  const SpectrumId sigma_s = variation == Variation::grey ? b.constant(5) : slope(b, 2, 8);
-  return grid_medium(b, zero_spectrum, sigma_s, grid, g);
-}
-
 TEST(GridVolumes, ThatOnlyScatterVanishInAFurnace) {
   for (const Variation variation : {Variation::grey, Variation::chromatic, Variation::coloured}) {
     SceneBuilder b(16, 16, 512, many_events);
@@ -236,82 +179,6 @@ TEST(GridVolumes, ScatterOnceAsTheIntegralSays) {
   }
   expect_mean(
       trace_radiances(*b.freeze()), [&](double nm) { return interpolate(expected, nm); }, 0.025);
-}
-
-// What a flame adds along the beam, from the camera on: sigma_a L_e times what is let through so far.
-template <class Density, class Glow>
-double seen_glow(const Density& density, const Glow& glow, double sigma_t) {
-  constexpr int steps = 4000;
-  constexpr double h = 2.0 / steps;
-  double sum = 0, depth = 0;
-  for (int i = 0; i < steps; ++i) {
-    const double z = 1 - (i + 0.5) * h, d = density(z);
-    sum += glow(z) * d * std::exp(-sigma_t * (depth + 0.5 * d * h)) * h;
-    depth += d * h;
-  }
-  return sum;
-}
-double warmth(int i, int j, int k) { return 20 * (i + j) + 60 * k; }  // degrees above 300 K, over 3
-
-// A thin flame that only absorbs and one that scatters out of the way what is not followed: at max_depth 0 both show
-// what they emit themselves, dimmed.
-TEST(GridVolumes, GlowByTheirGridAndTheirTemperature) {
-  for (const Integrator integrator : all_levels)
-    for (const double scattering : {0.0, 1.5})
-      for (const bool is_hot : {false, true}) {
-        SceneBuilder b = beam(1024, 0, integrator);
-        MediumGrid grid = unit_box();
-        grid.density = lumpy_grid(b);
-        const auto box = voxels_in_box(glm::ivec3(10), glm::dvec3(-1.2), glm::dvec3(1.2));
-        if (is_hot) {
-          grid.temperature = add_grid(b, glm::ivec3(10), box, warmth);
-          grid.temperature_offset = -100, grid.temperature_scale = 3;
-          grid.blackbody = BlackbodyUnit::peak;
-        } else {
-          grid.emission = add_grid(b, glm::ivec3(10), box, [](int i, int, int k) { return 1 + i + (k % 3); });
-        }
-        const Entity flame = grid_medium(b, slope(b, 0.02, 0.05), b.constant(scattering), grid);
-        Medium medium = b.scene.registry.get<Medium>(flame);
-        medium.emission = is_hot ? zero_spectrum : slope(b, 1, 2);
-        medium.emission_scale = 3;
-        b.scene.registry.set(flame, medium);
-        b.scene.meshes.push_back(cube_mesh());
-        b.separate(b.add(mesh(0), b.interface(), stretched(2, 2, 2)), flame);
-        const auto at = [&](GridId id, double z) { return value_at(b.scene.grids[id], {0.01, 0.02, z}).x; };
-        Samples expected;
-        for (size_t k = 0; k < expected.size(); k += 10) {
-          const double nm = lambda_min_nm + double(k), sigma_a = slope_at(nm, 0.02, 0.05);
-          const auto glow = [&](double z) {
-            if (!is_hot) return 3 * slope_at(nm, 1, 2) * at(grid.emission, z) * sigma_a;
-            const double kelvin = 3 * (at(grid.temperature, z) + 100);
-            return 3 * planck_radiance(kelvin, nm) / planck_radiance(kelvin, 2.897771955e6 / kelvin) * sigma_a;
-          };
-          expected[k] = seen_glow([&](double z) { return at(grid.density, z); }, glow, sigma_a + scattering);
-        }
-        for (size_t k = 0; k < expected.size(); ++k)
-          if (k % 10 != 0)
-            expected[k] = std::lerp(expected[k / 10 * 10], expected[k / 10 * 10 + 10], double(k % 10) / 10);
-        expect_mean(
-            trace_radiances(*b.freeze()), [&](double nm) { return interpolate(expected, nm); }, 0.03);
-      }
-}
-
-// In a furnace of its own radiance what absorbs and glows as much vanishes, whatever it scatters.
-TEST(GridVolumes, ThatGlowVanishAmongTheirEquals) {
-  for (const Variation variation : {Variation::grey, Variation::chromatic, Variation::coloured}) {
-    SceneBuilder b(16, 16, 512, many_events);
-    b.light(LightKind::environment, unit_spectrum, 1);
-    b.look_at({0, 0, 4}, {0, 0, 0}, perspective(30));
-    const Entity smoke = white_smoke(b, variation, 0.2f);
-    Medium medium = b.scene.registry.get<Medium>(smoke);
-    medium.sigma_a = slope(b, 1, 0.3);
-    medium.emission = unit_spectrum;
-    b.scene.registry.set(smoke, medium);
-    b.scene.meshes.push_back(cube_mesh());
-    b.separate(b.add(mesh(0), b.interface(), stretched(2, 2, 2)), smoke);
-    expect_mean(
-        trace_radiances(*b.freeze()), [](double) { return 1.0; }, 0.04);
-  }
 }
 
 // Three numbers per voxel: red, green and blue add up to their share on each wavelength, whatever they are.

@@ -10,7 +10,7 @@
 #include "scenes/native/keys.h"
 #include "scenes/native/read_native.h"
 #include "scenes/read_scene.h"
-#include "tests/scenes/support/files.h"
+#include "tests/scenes/support/native_messages.h"
 
 namespace metamer {
 namespace {
@@ -18,19 +18,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-const std::string folder = METAMER_SOURCE_DIR "/tests/scenes/native/";
-
-// The messages about a file, one a line, with the name of the file instead of its path.
-std::string messages_of(const std::string& text) {
-  Scene scene;
-  Diagnostics diagnostics;
-  const bool ok = read_native(folder + "scene.json", copy_bytes(text), scene, diagnostics);
-  EXPECT_NE(ok, diagnostics.has_errors());
-  std::string messages = format_diagnostics(diagnostics);
-  for (size_t at; (at = messages.find(folder)) != std::string::npos;) messages.erase(at, folder.size());
-  return messages;
-}
 
 // The messages about one entity, which stands on line 3.
 std::string messages_of_entity(const std::string& entity) {
@@ -43,12 +30,6 @@ std::string messages_of_material(const std::string& material) {
 
 std::string messages_of_transform(const std::string& transform) {
   return messages_of_entity("{\"transform\": " + transform + "}");
-}
-
-std::string read_text(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
 }
 
 TEST(NativeMistakes, FilesThatCannotBeRead) {
@@ -364,33 +345,13 @@ TEST(NativeMistakes, EveryKeyIsReadAndAWrongTypeIsReportedOnItsLine) {
       EXPECT_THAT(messages_of(wrong), HasSubstr("scene.json:" + std::to_string(line) + ": error: ")) << key;
     });
   };
-  break_each(read_text(folder + "every_key.json"));
+  break_each(read_text(native_folder + "every_key.json"));
   // A scene has one filter.
   for (const char* filter : {"\"mitchell\", \"radius\": 2,\n\"b\": 0.2,\n\"c\": 0.4", "\"sinc\",\n\"tau\": 2"})
     break_each(std::string("{\"metamer\": 1, \"entities\": [],\n\"settings\": {\n\"filter\": {\"type\": ") + filter +
                "}}}");
   for (const ObjectSpec& spec : all_object_specs())
     for (const KeySpec& key : spec.keys) EXPECT_TRUE(seen.contains(std::string(key.name))) << key.name;
-}
-
-TEST(NativeMistakes, SurvivesBeingCutAtEveryByte) {
-  std::string text = read_text(folder + "every_key.json");
-  while (text.back() != '}') text.pop_back();
-  for (size_t length = 0; length < text.size(); ++length)
-    EXPECT_THAT(messages_of(text.substr(0, length)), HasSubstr("scene.json:")) << length;
-}
-
-TEST(NativeMistakes, SurvivesEveryByteBeingReplaced) {
-  std::string text = read_text(folder + "every_key.json");
-  // Volumes that are not there: reading them tens of thousands of times would take minutes.
-  for (size_t at; (at = text.find("puff.vdb")) != std::string::npos;) text.replace(at, 8, "none.vdb");
-  for (size_t i = 0; i < text.size(); ++i) {
-    for (const char garbage : {'\0', '\xff', '"', '[', '}', '9'}) {
-      std::string damaged = text;
-      damaged[i] = garbage;
-      messages_of(damaged);  // checks that it says something exactly when it fails
-    }
-  }
 }
 
 TEST(NativeMistakes, SurvivesHugeArrays) {
