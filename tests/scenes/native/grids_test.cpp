@@ -152,7 +152,7 @@ TEST(NativeGrids, AllMistakesAreReportedInOneGo) {
         ":8: error: 'lookup' is the string \"nearest\"; expected 'trilinear' or 'stochastic'",
         "the file has 2 grids; expected the name of one of them: 'density', 'color'",
         ":9: error: a medium of type 'grid' needs a 'density', a 'sigma_a_grid' or a 'sigma_s_grid'",
-        ":10: error: 'albedo' and 'sigma_t' go together only", ":11: error: 'octaves' is 0; expected",
+        ":10: error: 'albedo' and 'sigma_t' go together only", ":11: error: 'octaves' is the number 0; expected",
         ":11: error: 'box' has its lower corner at 0 and its upper one at 0 along y",
         ":12: error: 'sigma_a' does not go with 'albedo' and 'sigma_t'", ":13: error: 'grid' goes with 'file' only",
         ":16: error: what absorbs nothing emits nothing: 'temperature' needs a 'sigma_a'"})
