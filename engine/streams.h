@@ -176,7 +176,7 @@ struct ShadeStream {
   Columns<uint32_t, 2> volumes;  // on the inside and the outside of the surface, where `carries_volumes`
   bool carries_volumes = false;
   bool carries_keys = false;  // shadow rays take the keys of their paths along
-  Columns<float, 4> share;  // where `carries_shares`; kernels of what light enters know when a wavelength is alone
+  Columns<float, 4> share;    // where `carries_shares`; kernels of what light enters know when a wavelength is alone
   bool carries_shares = false;
   // Writer: light_sample. Lanes without a light sample have radiance 0.
   Columns<float, 3> light_direction;  // unit, from the vertex
@@ -202,7 +202,7 @@ struct ShadowStream {
   uint32_t* slot;
   Columns<float, 4> lambda_nm;  // this and the volume that the ray starts in: only where the shading carries volumes
   uint32_t* volume;
-  float* time;  // where World::has_motion
+  float* time;                   // where World::has_motion
   uint32_t *pixel_seed, *index;  // of the path, where World::has_grids
 };
 

@@ -114,7 +114,7 @@ struct PendingFile {
 struct PendingGrid {
   struct Use {
     Entity medium;
-    GridId MediumGrid::* handle;
+    GridId MediumGrid::*handle;
   };
   GridRequest request;
   std::vector<Use> uses = {};

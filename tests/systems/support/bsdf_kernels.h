@@ -40,7 +40,8 @@ std::vector<BsdfResult> run_sample_dielectric(const std::vector<BsdfCase>& cases
 std::vector<BsdfResult> run_eval_rough_dielectric(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_sample_rough_dielectric(const std::vector<BsdfCase>& cases);
 std::vector<BsdfResult> run_sample_thin(const std::vector<BsdfCase>& cases);  // kappa as optical depth, but of opaque
-std::vector<BsdfResult> run_eval_phase(const std::vector<BsdfCase>& cases);   // alpha_x and alpha_y as g and g2, shininess as g2_share, wi[2] as cosine
+std::vector<BsdfResult> run_eval_phase(
+    const std::vector<BsdfCase>& cases);  // alpha_x and alpha_y as g and g2, shininess as g2_share, wi[2] as cosine
 std::vector<BsdfResult> run_sample_phase(const std::vector<BsdfCase>& cases);
 
 }  // namespace metamer::testing
