@@ -345,7 +345,7 @@ TEST(NativeMistakes, EveryKeyIsReadAndAWrongTypeIsReportedOnItsLine) {
       EXPECT_THAT(messages_of(wrong), HasSubstr("scene.json:" + std::to_string(line) + ": error: ")) << key;
     });
   };
-  break_each(read_text(native_folder + "every_key.json"));
+  break_each(text_of_file(native_folder + "every_key.json"));
   // A scene has one filter.
   for (const char* filter : {"\"mitchell\", \"radius\": 2,\n\"b\": 0.2,\n\"c\": 0.4", "\"sinc\",\n\"tau\": 2"})
     break_each(std::string("{\"metamer\": 1, \"entities\": [],\n\"settings\": {\n\"filter\": {\"type\": ") + filter +

@@ -77,7 +77,7 @@ TEST(Native, ReadsEveryKey) {
   EXPECT_EQ(s.color, ColorMode::spectral);
   EXPECT_EQ(r.scene.meshes.size(), 2u);
   EXPECT_EQ(r.scene.registry.table<Light>().size(), 17u);
-  EXPECT_EQ(r.scene.registry.table<Material>().size(), 24u);
+  EXPECT_EQ(r.scene.registry.table<Material>().size(), 26u);
 
   const auto camera = r.get<Camera>("eye");
   EXPECT_EQ(camera.fov_deg, 40);
@@ -112,7 +112,7 @@ TEST(Native, ReadsEveryKey) {
   EXPECT_EQ(r.get<Material>("made").alpha_y, 0.2f);
   EXPECT_NEAR(r.scene.spectra.value(r.get<Material>("ice").eta, 550), 1.31, 1e-6);
   EXPECT_NEAR(r.scene.spectra.value(r.get<Material>("ball").reflectance, 500), 0.35, 1e-6);
-  EXPECT_EQ(r.scene.location(r.find("ball")).line, 361u);
+  EXPECT_EQ(r.scene.location(r.find("ball")).line, 375u);
 
   const auto bowl = r.get<Geometry>("bowl"), pipe = r.get<Geometry>("pipe"), lock = r.get<Geometry>("lock");
   EXPECT_EQ(bowl.kind, ShapeKind::sphere);

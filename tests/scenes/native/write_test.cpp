@@ -40,7 +40,7 @@ TEST(NativeWriter, KnowsEveryFieldThatASceneHas) {
   EXPECT_EQ(field_count<Source>, 2u);  // a new file has lines of its own
   EXPECT_EQ(sizeof(RenderSettings), 152u);
   EXPECT_EQ(sizeof(Filter), 28u);
-  EXPECT_EQ(sizeof(Image), 128u);  // what textures leave in files is in memory where nothing limits it
+  EXPECT_EQ(sizeof(Image), 120u);  // what textures leave in files is in memory where nothing limits it
   EXPECT_EQ(sizeof(Texture), 176u);
   EXPECT_EQ(sizeof(TextureMapping), 92u);
   EXPECT_EQ(sizeof(Layer), 60u);

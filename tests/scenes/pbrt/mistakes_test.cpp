@@ -126,8 +126,9 @@ INSTANTIATE_TEST_SUITE_P(
          "2: error: Shape \"bilinearmesh\": 3 indices are not a multiple of 4"},
         {"Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"normal N\" [0 0 1]",
          "2: error: Shape \"bilinearmesh\": there must be one normal and one uv per vertex, or none"},
-        {"Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"none.png\"\n\"float maxanisotropy\" 0",
-         "3: error: Texture \"t\": 'maxanisotropy' must be at least 1"},
+        {"Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"" METAMER_SOURCE_DIR
+         "/docs/pictures/prism.png\"\n\"float maxanisotropy\" 0",
+         "3: error: Texture \"imagemap\": 'maxanisotropy' must be at least 1"},
         {"Shape \"plymesh\"", "2: error: Shape \"plymesh\": 'filename' is missing"},
         {"Material \"difuse\" \"float x\" 1", "2: error: there is no material \"difuse\" (did you mean 'diffuse'?)"},
         {"Material \"diffuse\" \"rgb reflectance\" [.5 -.1 0]",

@@ -89,7 +89,14 @@ TEST_F(Reports, InfoAndStatsListTheGridsOfMedia) {
   EXPECT_THAT(run({"info", scene}).out, HasSubstr("puff.vdb:density: float, 4x4x4, 512 voxels stored, "));
 
   ASSERT_EQ(run({"render", scene, "--stats", "s.json", "-q", "--size", "8x8", "--spp", "1"}).exit_code, 0);
-  EXPECT_EQ(parse_json(bytes("s.json"))["volumes"], info["grids"]);
+  Json::Value volumes = parse_json(bytes("s.json"))["volumes"], grids = info["grids"];
+  ASSERT_EQ(volumes.size(), grids.size());
+  for (Json::ArrayIndex i = 0; i < grids.size(); ++i) {  // --stats writes means with nine digits
+    EXPECT_NEAR(volumes[i]["mean"][0].asDouble(), grids[i]["mean"][0].asDouble(), 1e-8);
+    volumes[i].removeMember("mean");
+    grids[i].removeMember("mean");
+  }
+  EXPECT_EQ(volumes, grids);
 }
 
 TEST_F(Reports, InfoTellsWarnings) {

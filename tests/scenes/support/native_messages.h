@@ -24,7 +24,7 @@ inline std::string messages_of(const std::string& text) {
   return messages;
 }
 
-inline std::string read_text(const std::string& path) {
+inline std::string text_of_file(const std::string& path) {
   std::ostringstream text;
   text << std::ifstream(path, std::ios::binary).rdbuf();
   return text.str();
