@@ -63,6 +63,13 @@ void read_one(Job& job) {
   }
 }
 
+// A file that cannot be read is one mistake, however many of its grids a medium asks for.
+bool is_told(const Diagnostics& all, const Diagnostics& some) {
+  if (all.all().empty() || some.all().size() != 1) return false;
+  const Diagnostic &last = all.all().back(), &next = some.all().front();
+  return last.file == next.file && last.line == next.line && last.message == next.message;
+}
+
 }  // namespace
 
 std::optional<size_t> choose_grid(const GridRequest& request, std::span<const std::string> names) {
@@ -96,7 +103,7 @@ void read_grids(std::span<GridRequest> requests, Diagnostics& diagnostics) {
       job.request.found = false;
       job.request.grid = {};
     }
-    append_diagnostics(diagnostics, job.diagnostics);
+    if (!is_told(diagnostics, job.diagnostics)) append_diagnostics(diagnostics, job.diagnostics);
   }
 }
 

@@ -294,6 +294,8 @@ INSTANTIATE_TEST_SUITE_P(
          "3: error: MakeNamedMedium \"m\": 'rgb Le' needs 'rgb sigma_a': what absorbs nothing emits nothing"},
         {"MakeNamedMedium \"m\" \"string type\" \"nanovdb\"",
          "2: error: MakeNamedMedium \"m\": 'string filename' is missing"},
+        {"MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"/nowhere.nvdb\"",
+         "2: error: cannot read '/nowhere.nvdb': No such file or directory"},
     }));
 
 }  // namespace
